@@ -166,7 +166,8 @@ class RunSteps::Run {
     if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
     if (options_.values.color_features) show_features(mesh);
     if (const std::string& path = record_.output.path; !path.empty())
-      write_step("write", path, [&] { write_output(mesh, request_, options_.values.color_features, record_.output); });
+      write_step("write", path,
+                 [&] { write_output(mesh, request_, options_.values.color_features, record_.files.front()); });
     for (const RegionFile& file : files_of_kept(region_files_, mesh, [&](const std::string& text) { warn(text); }))
       write_step("write", file.path, [&] { write_region(file, mesh, request_.overwrite, record_); });
     for (const std::string& text : warnings_of_files(record_.files, offset_to_origin(mesh))) warn(text);

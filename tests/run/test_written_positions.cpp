@@ -133,6 +133,28 @@ TEST_CASE("written positions: the way out of coarse 64-bit numbers is another of
   CHECK(contains(said({5e5, 0, 0}), ": --recenter auto subtracts 500000 0 0 from them\n"));
 }
 
+TEST_CASE("written positions: the numbers that were measured are those that are written", "[mesh_file]") {
+  const TemporaryFolder folder;
+  const TriangleSoup torus = torus_at(kUtm);
+  const TriangleMesh mesh{torus.vertices, torus.triangles};
+  for (const char* ending : {"ply", "obj", "stl", "off", "glb", "gltf"}) {
+    INFO(ending);
+    MeshWriteOptions options;
+    options.offset_world = {5e5, 5.4e6, 300};
+    const std::string found = folder / (std::string("found.") + ending),
+                      passed = folder / (std::string("passed.") + ending);
+    write_mesh(found, mesh, options);
+    options.held = positions_in_file(mesh, ending, options.offset_world).held;
+    options.offset_world = {};
+    write_mesh(passed, mesh, options);
+    CHECK(get_file(passed) == get_file(found));
+    options.held->lost_triangles = 3;
+    options.overwrite = true;
+    CHECK(
+        contains(message_of(ErrorCode::unwritable_output, [&] { write_mesh(passed, mesh, options); }), "3 triangles"));
+  }
+}
+
 TEST_CASE("written positions: distances are measured where the input is", "[run]") {
   const TemporaryFolder folder;
   CpuContext context;
