@@ -139,7 +139,8 @@ Recenter parse_recenter(const std::string& text) {
 }
 
 std::vector<NamedFile> outputs_of(const RunRequest& r) {
-  std::vector<NamedFile> files = {{"OUTPUT", r.output.path},
+  const char* const replaced = r.report.empty() ? kInput : "";  // a report reads it again
+  std::vector<NamedFile> files = {{"OUTPUT", r.output.path, replaced},
                                   {"--stats", r.statistics},
                                   {"--report", r.report},
                                   {"--save-shell", r.save_shell},

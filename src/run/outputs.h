@@ -15,8 +15,6 @@ namespace isoshell {
 /// mesh.voronoi.preview.vdb.
 std::string preview_path(const std::string& path);
 
-constexpr const char* kInput = "INPUT";
-
 /// The files that a run writes and reads, as far as they are known before it.
 std::vector<NamedFile> outputs_of(const RunRequest& request);
 std::vector<NamedFile> inputs_of(const RunRequest& request);
