@@ -1,10 +1,10 @@
 // The union of a file's components alone: JSON with its time, faces, volume, genus, and what it reports.
-// Usage: bench_unions MESH [OUT.ply]
+// Usage: bench_unions MESH [OUT.ply [GAP]]
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "geometry/world_vector.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/io/mesh_file.h"
@@ -12,7 +12,7 @@
 int main(int argc, char** argv) {
   using namespace isoshell;
   if (argc < 2) {
-    std::cerr << "usage: bench_unions MESH [OUT.ply]\n";
+    std::cerr << "usage: bench_unions MESH [OUT.ply [GAP]]\n";
     return 2;
   }
   const TriangleSoup soup = read_mesh(argv[1]);
@@ -20,12 +20,16 @@ int main(int argc, char** argv) {
   context.threads = 1;
   UnionReport report;
   const auto begin = std::chrono::steady_clock::now();
-  const UnitedSoup united = boolean_union(soup, {}, report, context);
+  UnionOptions options;
+  options.sheet_gap_world = argc > 3 ? std::atof(argv[3]) : 0;
+  const UnitedSoup united = boolean_union(soup, options, report, context);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   const InputTopology topology = measure_topology(united.soup, context).topology;
   double volume6 = 0;
-  for (const auto& [a, b, c] : united.soup.triangles)
-    volume6 += dot(united.soup.vertices[a], cross(united.soup.vertices[b], united.soup.vertices[c]));
+  for (const auto& t : united.soup.triangles) {
+    const WorldPoint &a = united.soup.vertices[t[0]], &b = united.soup.vertices[t[1]], &c = united.soup.vertices[t[2]];
+    volume6 += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+  }
   if (argc > 2) write_mesh(argv[2], {united.soup.vertices, united.soup.triangles});
   std::cout << nlohmann::json{{"seconds", taken.count()},
                               {"faces_before", soup.triangles.size()},

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "isoshell/surface_source.h"
 
 namespace isoshell {
+
+struct Context;
+struct RemeshOptions;
 
 /// Larger loops are rims, of a bowl or a terrain: longer in terms of their component's diagonal, unless they are
 /// cracks, whose caps are small in terms of its area.
@@ -17,13 +21,6 @@ constexpr double kWidestCrack = 1e-5;
 
 struct RepairOptions {
   bool cap_loops = true;  ///< close holes with new faces
-};
-
-/// Vertices that were pulled back, as needles narrower than edges held them far away from the rest.
-struct FarVertexReport {
-  int64_t vertices = 0;
-  double distance_world = 0;     ///< of the farthest one from the rest
-  WorldPoint farthest{0, 0, 0};  ///< where it was
 };
 
 /// What was changed, by kind.
@@ -68,5 +65,16 @@ struct RepairReport {
 /// outward. The set of positions and triangles does not depend on the order of the soup's. Cost: sorts of vertices,
 /// faces and edges; n^3 steps for a hole of n edges up to 128, n^2 beyond.
 TriangleSoup repair_soup(const TriangleSoup& soup, const RepairOptions& options, RepairReport& report);
+
+/// Pulls vertices back that alone stretch a surface: by needles that are narrower than the edges that the options ask
+/// for, no triangle of a result could follow them, and a grid around them has no voxels for the rest.
+/// Result: the soup in which each such vertex stands in the middle of its foot, with its report; none where there are
+/// none, or where they were pulled back already. The body is the box of three quarters of the faces, those with the
+/// shortest longest edges. A vertex is far where it is farther from the body than 32 times its longest side. The foot
+/// of far vertices that faces connect are the others of these faces. They are pulled back where neither their box nor
+/// that of the foot has a side as long as an edge. Cost: linear in the faces; one look at each where no edge is longer
+/// than a quarter of the box. Throws: usage for options that ask for what is not possible.
+std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup, const RemeshOptions& options,
+                                                   Context& context);
 
 }  // namespace isoshell

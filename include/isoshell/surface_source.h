@@ -31,6 +31,13 @@ struct DirtCounts {
   int64_t surplus_bytes = 0;  ///< bytes behind the last row of a binary file, or behind a .glb file
 };
 
+/// Vertices that were pulled back, as needles narrower than edges held them far away from the rest.
+struct FarVertexReport {
+  int64_t vertices = 0;
+  double distance_world = 0;     ///< of the farthest one from the rest
+  WorldPoint farthest{0, 0, 0};  ///< where it was
+};
+
 /// Triangles in world units. Indices are in range; positions are finite for every referenced vertex.
 struct TriangleSoup {
   std::vector<WorldPoint> vertices;
@@ -44,6 +51,7 @@ struct TriangleSoup {
   FaceRegions regions;                               ///< that the triangles part; empty: they bound one solid
   /// Of voxels: pairs of regions that touched in islands alone, which were absorbed; ascending, the smaller first.
   std::vector<std::array<int32_t, 2>> absorbed_walls = {};
+  FarVertexReport far = {};  ///< what pull_back_far_vertices() has moved
 };
 
 }  // namespace isoshell

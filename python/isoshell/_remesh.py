@@ -66,7 +66,7 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
     volumes = stage_files(given)
     is_ours = is_written_here(target, given)
     if is_ours:
-        check_target(target, given, volumes, source)
+        check_target(target, given, volumes, source, may_replace=True)
     if options.get("report"):
         _report.require_k3d()
     keywords_of(given)  # what cannot be is refused before anything is read
@@ -123,8 +123,10 @@ def is_written_here(target: str, options: dict[str, Any]) -> bool:
                               and not options.get("stop_after"))
 
 
-def check_target(target: str, options: dict[str, Any], volumes: list[str], source: Any = None) -> None:
-    """Before a run whose output is such a file: whether it can be, and is not the file of the source."""
+def check_target(target: str, options: dict[str, Any], volumes: list[str], source: Any = None,
+                 may_replace: bool = False) -> None:
+    """Before a run whose output is such a file: whether it can be, and is not the file of the source, unless it may
+    replace that: a stage of USD is read as long as it is open, and a report reads the source again."""
     refused = [name for name in OF_OTHER_OUTPUTS if options.get(name)]
     if not is_usd(target) and options.get("recenter") is not None:
         refused.append("recenter")
@@ -136,7 +138,8 @@ def check_target(target: str, options: dict[str, Any], volumes: list[str], sourc
     if not is_usd(target):
         from ._exchange import _files
 
-        return _files.check_target(target, options.get("force") is True, others, inputs)
+        replaces = "INPUT" if may_replace and not options.get("report") else ""
+        return _files.check_target(target, options.get("force") is True, others, inputs, replaces)
     from ._usd import _write
 
     _write.check_target(target, options.get("force") is True, volumes, others, inputs)

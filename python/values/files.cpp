@@ -23,15 +23,18 @@ std::vector<NamedFile> files_of(const NamedPaths& paths) {
   return files;
 }
 
-void check(const NamedPaths& outputs, const NamedPaths& inputs, bool overwrite) {
-  check_output_files(files_of(outputs), files_of(inputs), overwrite);
+void check(const NamedPaths& outputs, const NamedPaths& inputs, bool overwrite, const std::string& replaces) {
+  std::vector<NamedFile> files = files_of(outputs);
+  if (!files.empty()) files.front().replaces = replaces;
+  check_output_files(files, files_of(inputs), overwrite);
 }
 
 }  // namespace
 
 void bind_files(nb::module_& m) {
   m.def("check_output_files", check, nb::arg("outputs"), nb::arg("inputs"), nb::arg("overwrite"),
-        "Before any work: what they are and their paths.");
+        nb::arg("replaces") = "",
+        "Before any work: what they are and their paths, and which of the inputs the first output may be.");
   m.def("write_text", write_text, nb::arg("path"), nb::arg("text"), nb::arg("overwrite"),
         "A file that appears whole or not at all.");
   m.def("put_in_place", put_in_place, nb::arg("finished"), nb::arg("path"), nb::arg("overwrite"),

@@ -36,13 +36,13 @@ std::optional<std::array<double, 3>> offset(const MadeResult& result, const std:
 std::vector<std::string> save(const MadeResult& result, const std::string& path, bool overwrite,
                               const std::string& recenter) {
   MeshWriteOptions options;
+  options.format = named_output(path, "", StopAfter::mesh).format;
   options.overwrite = overwrite;
-  if (const auto by = offset(result, recenter)) options.offset_world = {(*by)[0], (*by)[1], (*by)[2]};
   options.made_of = result.frame_note;
+  const auto by = offset(result, recenter).value_or(std::array<double, 3>{});
+  options.held = positions_in_file(result.mesh, options.format, {by[0], by[1], by[2]}).held;
   write_mesh(path, result.mesh, options);
-  const std::string format = named_output(path, "", StopAfter::mesh).format;
-  return warnings_of_files({{path, format, positions_in_file(result.mesh, format, options.offset_world).held}},
-                           offset_to_origin(result.mesh));
+  return warnings_of_files({{path, options.format, *options.held}}, offset_to_origin(result.mesh));
 }
 
 /// What a file of that name does not hold of the result, with the reasons.

@@ -2,8 +2,10 @@
 // and a tenth of a second of the compiler for every body there is. What is paid instead is one indirect call a range.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <type_traits>
+#include <vector>
 
 namespace isoshell {
 
@@ -42,5 +44,20 @@ void for_each_index(Index begin, Index end, const Body& body) {
 
 /// The sum of what `part` gives for such ranges.
 int64_t sum_over_ranges(int64_t count, int64_t grain, RangeFunction<int64_t> part);
+
+/// What `at` gives for every index below `count`, joined; joined with `start` a value stays as it is. Chunks of fixed
+/// size are joined in order: the same for any number of threads, sums of doubles, too.
+template <class Value, class At, class Join>
+Value joined_over(size_t count, const Value& start, const At& at, const Join& join) {
+  constexpr size_t kChunk = 4096;
+  std::vector<Value> chunks((count + kChunk - 1) / kChunk, start);
+  for_each_index(size_t(0), chunks.size(), [&](size_t c) {
+    const size_t end = std::min(count, (c + 1) * kChunk);
+    for (size_t i = c * kChunk; i < end; ++i) chunks[c] = join(chunks[c], at(i));
+  });
+  Value all = start;
+  for (const Value& chunk : chunks) all = join(all, chunk);
+  return all;
+}
 
 }  // namespace isoshell

@@ -43,9 +43,17 @@ const char* bits_of(const Placement& placement) { return placement.is_double() ?
                   "; subtract an offset from what is written (--recenter), or write PLY or OBJ");
 }
 
-void require_held(const std::string& path, const TriangleMesh& mesh, const Placement& placement) {
-  if (placement.is_double() && is_origin(placement.offset)) return;
-  if (const int64_t lost = count_lost_triangles(mesh, placement); lost > 0)
+/// As positions_in_file() found it.
+Placement placement_of(const HeldPositions& held) {
+  return {held.is_single ? NumberType::f32 : NumberType::f64, held.offset_world, held.origin_world};
+}
+
+int64_t count_lost(const TriangleMesh& mesh, const Placement& placement) {
+  return placement.is_double() && is_origin(placement.offset) ? 0 : count_lost_triangles(mesh, placement);
+}
+
+void require_held(const std::string& path, const Placement& placement, int64_t lost) {
+  if (lost > 0)
     refuse_numbers(path, placement,
                    counted(lost, "triangle tilts by more than 60 degrees or loses its area",
                            "triangles tilt by more than 60 degrees or lose their area"));
@@ -84,8 +92,10 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWri
   for (const Attribute& a : mesh.attributes)
     if (const std::string misfit = misfit_of(a, mesh.vertices.size(), mesh.triangles.size()); !misfit.empty())
       throw Error(ErrorCode::usage, "write_mesh", misfit);
-  const Placement placement = row.place(mesh, options.offset_world);
-  if (!options.may_lose_triangles) require_held(path, mesh, placement);
+  const std::optional<HeldPositions>& held = options.held;
+  const Placement placement = held ? placement_of(*held) : row.place(mesh, options.offset_world);
+  if (!options.may_lose_triangles)
+    require_held(path, placement, held ? held->lost_triangles : count_lost(mesh, placement));
   OutputFile file(path, options.overwrite);
   row.write(file, mesh, placement, options);
   file.commit();
@@ -97,6 +107,7 @@ FilePositions positions_in_file(const TriangleMesh& mesh, const std::string& for
   HeldPositions& held = in_file.held;
   held.is_single = !placement.is_double();
   held.offset_world = offset_world;
+  held.origin_world = placement.origin;
   held.shortest_edge_world = shortest_edge_world(mesh);
   in_file.vertices.resize(mesh.vertices.size());
   for_each_index(size_t(0), mesh.vertices.size(),
@@ -107,7 +118,7 @@ FilePositions positions_in_file(const TriangleMesh& mesh, const std::string& for
                      "vertex " + std::to_string(v) + " at " + exact_place(mesh.vertices[v]) + " would be infinite");
   if (placement.is_double() && is_origin(offset_world)) return in_file;
   held.moved_world = largest_move_world(mesh, placement);
-  held.lost_triangles = count_lost_triangles(mesh, placement);
+  held.lost_triangles = count_lost(mesh, placement);
   return in_file;
 }
 

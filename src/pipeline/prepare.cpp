@@ -9,6 +9,7 @@
 #include "isoshell/error.h"
 #include "isoshell/part_regions.h"
 #include "isoshell/remesh.h"
+#include "isoshell/repair.h"
 #include "options/check_options.h"
 #include "pipeline/grid/memory_estimate.h"
 #include "pipeline/grid/prepared_surface.h"
@@ -21,7 +22,6 @@
 #include "pipeline/repaired_input.h"
 #include "pipeline/sheet/prepare_surface.h"
 #include "pipeline/sheet/warm_start.h"
-#include "repair/holes/far_vertices.h"
 
 namespace isoshell {
 namespace {
@@ -237,9 +237,9 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
 Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested, Context& context) {
   RemeshReport report;
   const RemeshOptions given_options = checked(requested);
-  const auto edge_world = [&](double area_world) { return target_of(given_options, area_world).edge_length_world; };
-  const std::optional<TriangleSoup> pulled = repair::pull_back_far_vertices(given_soup, edge_world, report.input.far);
+  const std::optional<TriangleSoup> pulled = pull_back_far_vertices(given_soup, given_options, context);
   const TriangleSoup& soup = pulled ? *pulled : given_soup;
+  report.input.far = soup.far;
   if (!given_options.regions.empty()) {
     PartRegions found =
         timed(report, "regions", context, [&] { return find_part_regions(soup, given_options.regions, context); });

@@ -1,14 +1,13 @@
 // See repaired_input.h.
 #include "pipeline/repaired_input.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <cmath>
 #include <functional>
 #include <sstream>
 #include <utility>
 
+#include "core/parallel_ranges.h"
+#include "core/watched.h"
 #include "geometry/world_vector.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/readable.h"
@@ -39,13 +38,7 @@ bool is_inside_out(const TriangleSoup& soup, double area_world) {
     const auto& [a, b, c] = soup.triangles[t];
     return dot(soup.vertices[a] - o, cross(soup.vertices[b] - o, soup.vertices[c] - o));
   };
-  const double sum = tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<size_t>(0, soup.triangles.size(), 4096), 0.0,
-      [&](const tbb::blocked_range<size_t>& r, double value) {
-        for (size_t t = r.begin(); t < r.end(); ++t) value += six_volumes(t);
-        return value;
-      },
-      std::plus<double>());
+  const double sum = joined_over(soup.triangles.size(), 0., six_volumes, std::plus<double>());
   return sum < -6 * kLeastVolume * area_world * std::sqrt(area_world);
 }
 
@@ -67,7 +60,8 @@ class Repair {
       unite(left, plan_.options.boundary == Boundary::keep);
     }
     const InputTopology& input = made_.topology;
-    if (input.closed && input.oriented && input.components == 1 && is_inside_out(soup(), input.area_world))
+    if (input.closed && input.oriented && input.components == 1 &&
+        run_with_threads(context_, [&] { return is_inside_out(soup(), input.area_world); }))
       report_.input.united.turned_components = 1;  // by what follows, which knows one side from the other
     return std::move(made_);
   }

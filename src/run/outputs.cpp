@@ -139,7 +139,8 @@ Recenter parse_recenter(const std::string& text) {
 }
 
 std::vector<NamedFile> outputs_of(const RunRequest& r) {
-  std::vector<NamedFile> files = {{"OUTPUT", r.output.path},
+  const char* const replaced = r.report.empty() ? kInput : "";  // a report reads it again
+  std::vector<NamedFile> files = {{"OUTPUT", r.output.path, replaced},
                                   {"--stats", r.statistics},
                                   {"--report", r.report},
                                   {"--save-shell", r.save_shell},
@@ -236,8 +237,9 @@ std::vector<RegionFile> files_of_kept(const std::vector<RegionFile>& files, cons
   return kept;
 }
 
-void write_output(const TriangleMesh& mesh, const RunRequest& request, bool curve_edges, const OutputRequest& output) {
-  MeshWriteOptions options{output.format, request.overwrite, curve_edges, output.recenter.offset()};
+void write_output(const TriangleMesh& mesh, const RunRequest& request, bool curve_edges, const WrittenFile& output) {
+  MeshWriteOptions options{output.format, request.overwrite, curve_edges};
+  options.held = output.held;
   options.may_lose_triangles = true;  // a gate says it
   options.made_of = request.made_of;
   write_mesh(output.path, mesh, options);
@@ -249,10 +251,11 @@ void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwri
   fs::create_directory(folder, code);
   if (code) refuse(folder.string() + ": cannot be made: " + code.message());
   const TriangleMesh region = region_of(mesh, file.label);
-  const WorldPoint offset = record.output.recenter.offset();
-  const std::string format = format_of_path(file.path);
-  record.files.push_back({file.path, format, positions_in_file(region, format, offset).held});
-  write_mesh(file.path, region, {format, overwrite, false, offset, true});
+  MeshWriteOptions options{format_of_path(file.path), overwrite};
+  options.held = positions_in_file(region, options.format, record.output.recenter.offset()).held;
+  options.may_lose_triangles = true;
+  record.files.push_back({file.path, options.format, *options.held});
+  write_mesh(file.path, region, options);
 }
 
 }  // namespace isoshell

@@ -15,8 +15,6 @@ namespace isoshell {
 /// mesh.voronoi.preview.vdb.
 std::string preview_path(const std::string& path);
 
-constexpr const char* kInput = "INPUT";
-
 /// The files that a run writes and reads, as far as they are known before it.
 std::vector<NamedFile> outputs_of(const RunRequest& request);
 std::vector<NamedFile> inputs_of(const RunRequest& request);
@@ -47,8 +45,8 @@ std::vector<RegionFile> checked_region_files(const RunRequest& request, const Fa
 std::vector<RegionFile> files_of_kept(const std::vector<RegionFile>& files, const TriangleMesh& mesh,
                                       const std::function<void(const std::string&)>& warn);
 
-/// To the output. Throws: as write_mesh().
-void write_output(const TriangleMesh& mesh, const RunRequest& request, bool curve_edges, const OutputRequest& output);
+/// To the output, in the numbers that the record says of its file. Throws: as write_mesh().
+void write_output(const TriangleMesh& mesh, const RunRequest& request, bool curve_edges, const WrittenFile& output);
 
 /// The region's closed mesh, less the offset of the output, in its folder, which is made where it is not there, and its
 /// file in the record. Throws: as write_mesh().

@@ -160,7 +160,7 @@ void check_sequence(const SequenceRequest& request) {
     const std::string &from = one.input.path, &to = one.output.path;
     if (!from.empty() && !fs::exists(from)) missing.push_back(name_of(frame, from));
     if (!one.overwrite && fs::exists(to)) there.push_back(name_of(frame, to));
-    for (const NamedFile& file : outputs_of(one)) outputs.push_back(file);
+    for (const NamedFile& file : outputs_of(one)) outputs.push_back({file.what, file.path});  // replacing no input
     for (const NamedFile& file : inputs_of(one)) inputs.push_back(file);
   }
   if (!missing.empty() && !request.keep_going)

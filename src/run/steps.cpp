@@ -10,6 +10,7 @@
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/polyline_file.h"
 #include "isoshell/io/vdb_file.h"
+#include "isoshell/repair.h"
 #include "isoshell/transfer_attributes.h"
 #include "progress/step.h"
 #include "run/choose_attributes.h"
@@ -95,9 +96,9 @@ class RunSteps::Run {
   const Input& input() const { return input_.value(); }
   RunEstimate estimate() {
     read();
-    read_sizing_field();
     if (input_->stage) refuse_use("--dry-run needs a mesh as INPUT, a stage file has its grid already");
-    find_walls();
+    find_surface();
+    read_sizing_field();
     return estimate_run(surface(), measure_topology(surface(), *context_).topology, options_.values);
   }
 
@@ -105,9 +106,9 @@ class RunSteps::Run {
     if (prepared_) return *prepared_;
     check_files();
     read();
-    find_walls();
+    find_surface();
     progress_.expect(surface(), options_.values, *context_);
-    const bool has_regions = !surface().regions.empty();  // then distances are from the walls as they came
+    const bool has_regions = !surface().regions.empty();  // then distances are from these walls
     region_files_ = checked_region_files(request_, surface().regions);
     left_out_ = left_out_of_stage_files(*input_, options_.values.attributes);
     if (input_->stage && !left_out_.empty())
@@ -165,7 +166,8 @@ class RunSteps::Run {
     if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
     if (options_.values.color_features) show_features(mesh);
     if (const std::string& path = record_.output.path; !path.empty())
-      write_step("write", path, [&] { write_output(mesh, request_, options_.values.color_features, record_.output); });
+      write_step("write", path,
+                 [&] { write_output(mesh, request_, options_.values.color_features, record_.files.front()); });
     for (const RegionFile& file : files_of_kept(region_files_, mesh, [&](const std::string& text) { warn(text); }))
       write_step("write", file.path, [&] { write_region(file, mesh, request_.overwrite, record_); });
     for (const std::string& text : warnings_of_files(record_.files, offset_to_origin(mesh))) warn(text);
@@ -232,7 +234,10 @@ class RunSteps::Run {
     request_.around_write ? request_.around_write(path, write) : write();
   }
 
-  void find_walls() {  // of the parts of a mesh, where they are asked for
+  /// That is meshed, and measured from: the input without far vertices, or the walls of its parts.
+  void find_surface() {
+    if (std::optional<TriangleSoup> pulled = pull_back_far_vertices(input_->soup, options_.values, *context_))
+      input_->soup = std::move(*pulled);
     if (const std::string& parts = options_.values.regions; !parts.empty() && !walls_)
       walls_ = timed("regions", [&] { return walls_of_parts(*input_, parts, teller(), record_.input, *context_); });
   }

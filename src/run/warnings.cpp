@@ -40,10 +40,11 @@ std::string ways_to_fewer_curves(const RunRecord& record) {
 }
 
 std::string ways_to_finer_numbers(const HeldPositions& held, const WorldPoint& offset) {
-  if (!held.is_single) return "";
-  const bool is_far = is_zero(held.offset_world) && !is_zero(offset);
-  return (is_far ? "--recenter auto subtracts " + exact_place(offset) + " from them, or " : std::string()) +
-         "write PLY or OBJ, which have all digits";
+  std::string ways;
+  if (const WorldPoint& a = held.offset_world, &b = offset; a.x != b.x || a.y != b.y || a.z != b.z)
+    ways = is_zero(offset) ? "leave out --recenter" : "--recenter auto subtracts " + exact_place(offset) + " from them";
+  if (held.is_single) ways += (ways.empty() ? "" : ", or ") + std::string("write PLY or OBJ, which have all digits");
+  return ways;
 }
 
 }  // namespace
@@ -134,9 +135,9 @@ std::vector<std::string> warnings_of_files(const std::vector<WrittenFile>& files
                          "; add it to have them where the input is");
     if (!held.is_coarse()) continue;
     std::ostringstream text;
-    text << file.path << ": " << file.format << " files have 32-bit floats, which move vertices by up to "
-         << held.moved_world << " where edges are from " << held.shortest_edge_world
-         << " long; what is measured of the result is of these";
+    text << file.path << ": " << file.format << " files have " << (held.is_single ? "32" : "64")
+         << "-bit floats, which move vertices by up to " << held.moved_world << " where edges are from "
+         << held.shortest_edge_world << " long; what is measured of the result is of these";
     const std::string ways = ways_to_finer_numbers(held, offset);
     warnings.push_back(text.str() + (ways.empty() ? "" : ": " + ways));
   }

@@ -44,13 +44,30 @@ TEST_CASE("outputs: one file under two names is refused before any work", "[cli]
   const auto linked = folder.run("ball.off link.ply --stats s.json --force" + kQuick);
   CHECK(linked.status == 2);
   CHECK(contains(linked.err, "OUTPUT link.ply and --stats s.json are one file"));
-  const auto itself = folder.run("ball.off same.off --force" + kQuick);
+  const auto itself = folder.run("ball.off out.ply --stats same.off --force" + kQuick);
   CHECK(itself.status == 2);
-  CHECK(contains(itself.err, "OUTPUT same.off and INPUT ball.off are one file"));
+  CHECK(contains(itself.err, "--stats same.off and INPUT ball.off are one file"));
+  CHECK(folder.run("ball.off - --output-format off --force >>ball.off" + kQuick).status == 2);
   CHECK(folder.run("ball.off - --output-format ply --stats s.json --force >s.json" + kQuick).status == 2);
   CHECK(folder.run("gone.off dangling.ply --force" + kQuick).status == 4);
   CHECK(folder.run("gone.off " + std::string(300, 'a') + ".ply" + kQuick).status == 4);
   CHECK_FALSE(folder.has("gone.json"));
+}
+
+TEST_CASE("outputs: a result takes the place of its input, whole or not at all, where --force says so", "[cli]") {
+  Folder folder;
+  write_ball(folder);
+  fs::create_symlink("ball.off", folder / "link.off");
+  const std::string given = folder.content("ball.off");
+  const auto refused = folder.run("ball.off link.off" + kQuick);
+  CHECK(refused.status == 4);
+  CHECK(contains(refused.err, "link.off: is INPUT and exists already; --force replaces it"));
+  CHECK(folder.shell("ulimit -f 1; '" + command_path() + "' ball.off ball.off --force" + kQuick).status == 4);
+  CHECK(folder.content("ball.off") == given);
+  CHECK(folder.run("ball.off other.off" + kQuick).status == 0);
+  CHECK(folder.run("ball.off link.off --force" + kQuick).status == 0);
+  CHECK(folder.content("ball.off") == folder.content("other.off"));
+  CHECK(fs::is_symlink(folder / "link.off"));
 }
 
 TEST_CASE("outputs: no file gets the number of a closed standard stream", "[cli]") {

@@ -52,6 +52,13 @@ TEST_CASE("output files: one file is refused under two names, whatever links the
     CHECK(contains(twice, "OUTPUT " + same + " and --stats " + there + " are one file"));
     CHECK(contains(refusal(ErrorCode::usage, {{"OUTPUT", same}}, true, {{"INPUT", there}}), "INPUT"));
   }
+  const std::vector<NamedFile> input = {{"INPUT", there}, {"--sizing", made}};
+  put_file(made, "x");
+  CHECK(refusal(ErrorCode::usage, {{"OUTPUT", folder / "link", "INPUT"}}, true, input).empty());
+  CHECK(contains(refusal(ErrorCode::unwritable_output, {{"OUTPUT", folder / "link", "INPUT"}}, false, input),
+                 "is INPUT and exists already; --force"));
+  CHECK(contains(refusal(ErrorCode::usage, {{"OUTPUT", made, "INPUT"}}, true, input), "--sizing"));
+  fs::remove(made);
   CHECK(contains(refusal(ErrorCode::usage, {{"OUTPUT", made}, {"--stats", folder / "other/made"}}), "one file"));
   CHECK(refusal(ErrorCode::usage, {{"OUTPUT", made}, {"--stats", folder / "made"}}).empty());
   CHECK(get_file(there) == "x");

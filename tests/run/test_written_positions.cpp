@@ -97,6 +97,64 @@ TEST_CASE("written positions: less an offset, which the file, a warning and the 
   }
 }
 
+TEST_CASE("written positions: an offset that takes digits from 64-bit numbers is said to move vertices", "[run]") {
+  const TemporaryFolder folder;
+  CpuContext context;
+  for (const char* ending : {"ply", "obj", "off"}) {
+    const std::string path = folder / (std::string("out.") + ending);
+    INFO(path);
+    const RunResult near = run(input_of(torus_at(kUtm), "torus"), run_to(path, "auto"), context);
+    const HeldPositions& exact = near.record.files.front().held;
+    CHECK((exact.is_single || exact.moved_world == 0));
+    RunRequest request = run_to(path, "1e13,0,0");
+    request.overwrite = true;
+    const RunResult result = run(input_of(torus_at(kNear), "torus"), request, context);
+    const HeldPositions& held = result.record.files.front().held;
+    const TriangleSoup read = read_mesh(path);
+    double moved = 0;
+    if (read.vertices.size() == result.mesh.vertices.size())
+      for (size_t v = 0; v < read.vertices.size(); ++v)  // exact in sums of 64 + 64 bits, whose halves do not overlap
+        moved = std::max(moved, std::abs((read.vertices[v].x + 1e13) - result.mesh.vertices[v].x));
+    CHECK(held.moved_world == moved);
+    CHECK(moved > 1e-4);
+    CHECK(moved <= std::ldexp(1, -10));
+  }
+}
+
+TEST_CASE("written positions: the way out of coarse 64-bit numbers is another offset", "[run]") {
+  HeldPositions held;
+  held.offset_world = {1e15, 0, 0};
+  held.moved_world = held.shortest_edge_world = .1;
+  const auto said = [&](const WorldPoint& to_origin) {
+    return all_of(warnings_of_files({{"out.ply", "ply", held}}, to_origin));
+  };
+  CHECK(contains(said({0, 0, 0}), "ply files have 64-bit floats, which move vertices by up to 0.1"));
+  CHECK(contains(said({0, 0, 0}), ": leave out --recenter\n"));
+  CHECK(contains(said({5e5, 0, 0}), ": --recenter auto subtracts 500000 0 0 from them\n"));
+}
+
+TEST_CASE("written positions: the numbers that were measured are those that are written", "[mesh_file]") {
+  const TemporaryFolder folder;
+  const TriangleSoup torus = torus_at(kUtm);
+  const TriangleMesh mesh{torus.vertices, torus.triangles};
+  for (const char* ending : {"ply", "obj", "stl", "off", "glb", "gltf"}) {
+    INFO(ending);
+    MeshWriteOptions options;
+    options.offset_world = {5e5, 5.4e6, 300};
+    const std::string found = folder / (std::string("found.") + ending),
+                      passed = folder / (std::string("passed.") + ending);
+    write_mesh(found, mesh, options);
+    options.held = positions_in_file(mesh, ending, options.offset_world).held;
+    options.offset_world = {};
+    write_mesh(passed, mesh, options);
+    CHECK(get_file(passed) == get_file(found));
+    options.held->lost_triangles = 3;
+    options.overwrite = true;
+    CHECK(
+        contains(message_of(ErrorCode::unwritable_output, [&] { write_mesh(passed, mesh, options); }), "3 triangles"));
+  }
+}
+
 TEST_CASE("written positions: distances are measured where the input is", "[run]") {
   const TemporaryFolder folder;
   CpuContext context;

@@ -1,4 +1,5 @@
 // Vertices far away from all others, on shapes where it is known which these are.
+#include "isoshell/memory_estimate.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/remesh.h"
 #include "repair/holes/far_vertices.h"
@@ -23,10 +24,9 @@ struct PulledBack {
 };
 
 PulledBack pulled_back(const TriangleSoup& soup, double edge_world = kEdge) {
-  PulledBack made;
-  made.soup = repair::pull_back_far_vertices(
-      soup, [&](double) { return edge_world; }, made.report);
-  return made;
+  std::optional<TriangleSoup> made = repair::pull_back_far_vertices(soup, [&](double) { return edge_world; });
+  const FarVertexReport report = made ? made->far : FarVertexReport{};
+  return {std::move(made), report};
 }
 
 /// Almost the ball that it was.
@@ -100,6 +100,14 @@ TEST_CASE("far vertices: a wide part with few faces beside a small one with many
   CHECK_FALSE(pulled_back(plate, .0153).soup);
 }
 
+TEST_CASE("far vertices: what was pulled back is not looked at again", "[repair]") {
+  const PulledBack made = pulled_back(ball_with({{200, {1e5, 0, 0}}}));
+  REQUIRE(made.soup);
+  CHECK_FALSE(pulled_back(*made.soup).soup);
+  Context context;
+  CHECK(prepare(*made.soup, {}, context).report().input.far.vertices == 1);
+}
+
 TEST_CASE("far vertices: of an open surface, too, and that is said", "[repair][run]") {
   TriangleSoup open = ball_with({{200, {1e5, 0, 0}}});
   open.triangles.erase(open.triangles.begin());
@@ -123,4 +131,15 @@ TEST_CASE("far vertices: the mesh of a ball with one is that of a ball, and says
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   CHECK(result.report.input.far.vertices == 1);
   for (const WorldPoint& p : result.mesh.vertices) CHECK(std::abs(p.x) < 1.1);
+}
+
+TEST_CASE("far vertices: an estimate is that of the surface without them", "[repair][run]") {
+  RemeshOptions options;
+  options.edge_length_world = kEdge;
+  Context context;
+  const TriangleSoup ball = ball_with({{200, {1e5, 0, 0}}});
+  const RunEstimate estimate = estimate_run(ball, measure_topology(ball, context).topology, options);
+  const RemeshResult result = remesh(ball, options, context);
+  CHECK(estimate.voxel_size_world == result.report.grid.frame.voxel_size);
+  CHECK(estimate.vertices == int64_t(result.mesh.vertices.size()));
 }

@@ -1,9 +1,11 @@
 // Loops over threads: every index once, sums, and what a body throws.
 #include <atomic>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
 #include "core/parallel_ranges.h"
+#include "core/watched.h"
 #include "support/catch.h"
 
 using namespace isoshell;
@@ -44,4 +46,17 @@ TEST_CASE("parallel ranges: what a body throws is thrown to the caller", "[paral
                                    if (i == 700) throw std::runtime_error("700");
                                  }),
                   std::runtime_error);
+}
+
+TEST_CASE("parallel ranges: values are joined in one order, whatever the threads", "[parallel_ranges]") {
+  const auto part = [](size_t i) { return 1 / double(i + 1); };
+  for (const size_t count : {size_t(0), size_t(1), size_t(4096), size_t(100000)}) {
+    const double sum = joined_over(count, 0., part, std::plus<double>());
+    Context context;
+    for (context.threads = 1; context.threads < 4; ++context.threads)
+      CHECK(run_with_threads(context, [&] { return joined_over(count, 0., part, std::plus<double>()); }) == sum);
+    double serial = 0;
+    for (size_t i = 0; i < count; ++i) serial += part(i);
+    CHECK(sum == Approx(serial).epsilon(1e-12));
+  }
 }

@@ -11,8 +11,8 @@
 namespace isoshell::tool {
 namespace {
 
-Context context;
-Program program;  // lives as long as the process, as signals that name it may come until then
+Context& context = *new Context;  // without an end, as signals that cancel it may come until that of the process
+Program program;
 
 int run_command(int argc, const char* const* argv, const WriteReport& write_report) {
   const CommandLine command = parse_command_line(argc, argv, program);
@@ -43,7 +43,7 @@ int report(ErrorCode code, const char* message) {
 int command(int argc, const char* const* argv, const WriteReport& write_report, const Program& front) {
   fill_closed_streams();
   program = front;
-  answer_signals(context, program.name.c_str());
+  answer_signals(context, program.name);
   try {
     return on_own_thread([&] { return run_command(argc, argv, write_report); });
   } catch (const Error& e) {

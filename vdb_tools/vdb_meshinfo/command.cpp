@@ -20,8 +20,8 @@
 namespace isoshell::tool {
 namespace {
 
-Context context;
-std::string program;  // lives as long as the process, as signals that name it may come until then
+Context& context = *new Context;  // without an end, as signals that cancel it may come until that of the process
+std::string program;
 
 /// Before anything is read.
 void check_files(const MeshInfoArguments& a) {
@@ -79,7 +79,7 @@ int report(ErrorCode code, const char* message) {
 int mesh_info_command(int argc, const char* const* argv, const ReadOther& read_other, const MeshInfoProgram& front) {
   fill_closed_streams();
   program = front.name;
-  answer_signals(context, program.c_str());
+  answer_signals(context, program);
   try {
     return on_own_thread([&] { return run_command(argc, argv, read_other, front); });
   } catch (const Error& e) {

@@ -1,6 +1,7 @@
 // Mesh files: OBJ, PLY, STL, OFF and glTF in and out. Parallel; no count in a file is trusted.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "isoshell/surface_source.h"
@@ -20,6 +21,19 @@ namespace isoshell {
 /// reading takes more than `memory_limit_bytes`, if above 0.
 TriangleSoup read_mesh(const std::string& path, const std::string& format = "", int64_t memory_limit_bytes = 0);
 
+/// What the numbers of a file make of the positions of a mesh.
+struct HeldPositions {
+  bool is_single = false;               ///< numbers are 32-bit floats, else of 64 bits
+  WorldPoint offset_world = {0, 0, 0};  ///< that was subtracted
+  WorldPoint origin_world = {0, 0, 0};  ///< what the numbers are about; the file says it, and readers add it
+  double moved_world = 0;               ///< how far rounding moves the farthest vertex, the offset aside
+  double shortest_edge_world = 0;       ///< of the mesh
+  int64_t lost_triangles = 0;           ///< that tilt by more than 60 degrees or lose their area thereby
+
+  /// So that angles are other ones.
+  bool is_coarse() const { return 100 * moved_world > shortest_edge_world; }
+};
+
 struct MeshWriteOptions {
   std::string format = {};  ///< a name of file_format.h; empty: by the path
   bool overwrite = false;
@@ -27,6 +41,8 @@ struct MeshWriteOptions {
   WorldPoint offset_world = {0, 0, 0};  ///< subtracted from what is written; comments of the file say so
   bool may_lose_triangles = false;      ///< also write what HeldPositions::lost_triangles counts
   std::string made_of = {};             ///< of a frame of a sequence: a comment that says of what, in PLY only
+  /// What positions_in_file() said of this mesh in this format, with its offset; none: it is found out here.
+  std::optional<HeldPositions> held = {};
 };
 /// Writes a mesh: PLY binary little-endian (double when single precision would move a vertex by more than a
 /// thousandth of the shortest edge, else float) with all attributes, OBJ with those that it can hold and faces sorted
@@ -37,18 +53,6 @@ struct MeshWriteOptions {
 /// where the format's numbers are too coarse for the triangles, or too small, unless that may be; usage for attributes,
 /// materials or regions that do not fit the mesh, and for names that PLY cannot hold.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshWriteOptions& options = {});
-
-/// What the numbers of a file make of the positions of a mesh.
-struct HeldPositions {
-  bool is_single = false;               ///< numbers are 32-bit floats, else of 64 bits
-  WorldPoint offset_world = {0, 0, 0};  ///< that was subtracted
-  double moved_world = 0;               ///< how far rounding moves the farthest vertex
-  double shortest_edge_world = 0;       ///< of the mesh
-  int64_t lost_triangles = 0;           ///< that tilt by more than 60 degrees or lose their area thereby
-
-  /// So that angles are other ones.
-  bool is_coarse() const { return 100 * moved_world > shortest_edge_world; }
-};
 
 struct FilePositions {
   HeldPositions held;

@@ -10,12 +10,16 @@ namespace isoshell {
 struct NamedFile {
   std::string what;  ///< "OUTPUT", "--stats"
   std::string path;  ///< "-" is a standard stream; empty: there is none
+  /// Of an output: which input may be the same file, where outputs may replace files. That one is read whole before.
+  std::string replaces = {};
 };
 
+constexpr const char* kInput = "INPUT";
+
 /// Every output can be written and is there only if it may be replaced; no two of them are one file, and none is an
-/// input, whatever links their paths go through. Temporary files that killed processes of this host have left in the
-/// folders of the outputs are removed, unless `keeps_leftovers`: for a folder of many frames that takes long. Throws:
-/// unwritable_output; usage for a file that is named twice.
+/// input that it does not replace, whatever links their paths go through. Temporary files that killed processes of this
+/// host have left in the folders of the outputs are removed, unless `keeps_leftovers`: for a folder of many frames that
+/// takes long. Throws: unwritable_output; usage for a file that is named twice.
 void check_output_files(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs, bool overwrite,
                         bool keeps_leftovers = false);
 

@@ -43,14 +43,17 @@ def read(path: str, options: dict[str, Any]) -> Any:
 
 
 def check_target(path: str, overwrite: bool, others: Iterable[tuple[str, str]] = (),
-                 inputs: Iterable[tuple[str, str]] = ()) -> None:
-    """Before a run: whether its result could be written there, beside its other files and those that it reads.
+                 inputs: Iterable[tuple[str, str]] = (), replaces: str = "") -> None:
+    """Before a run: whether its result could be written there, beside its other files and those that it reads, of which
+    it may be the one that it replaces.
 
     Raises:
         Error: of code UNWRITABLE_OUTPUT or USAGE.
     """
-    _module_of(_format_for(path, "writes")).check(path)
-    _isoshell.check_output_files([("OUTPUT", path), *others], list(inputs), overwrite)
+    module = _module_of(_format_for(path, "writes"))
+    module.check(path)
+    beside = [("the numbers of OUTPUT", file) for file in module.files_beside(path)]
+    _isoshell.check_output_files([("OUTPUT", path), *beside, *others], list(inputs), overwrite, replaces)
 
 
 def write(path: str, made: Result | Mesh, overwrite: bool) -> None:

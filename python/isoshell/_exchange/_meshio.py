@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
 
 from .._errors import Error
 from .._inputs import Mesh, Points
@@ -28,8 +29,10 @@ SIDES = {  # of volume cells, by their corners: outward
 GMSH = {"gmsh:physical": "group"}
 # Of an ending: the module of meshio. Its general functions try several formats, print, and exit where none fits.
 MODULES = {"msh": "gmsh", "vtu": "vtu", "med": "med", "xdmf": "xdmf", "xmf": "xdmf", "inp": "abaqus"}
+XDMF = ("xdmf", "xmf")
+XDMF_TYPES = {"f": "Float", "i": "Int", "u": "UInt"}  # of numpy's kinds
 ALONE = ("inp",)  # hold vertices and faces, and nothing else
-WITHOUT_NAMES = ("vtu", "med", "xdmf", "xmf")
+WITHOUT_NAMES = ("vtu", "med", *XDMF)
 
 
 def taken(given: Any, options: dict[str, Any]) -> Any:
@@ -181,6 +184,9 @@ def write(made: Result | Mesh, path: str) -> list[str]:
         mesh.field_data = {}
     if ending == "msh":
         _fit_gmsh(mesh)
+    if ending in XDMF:
+        _write_xdmf(mesh, path)
+        return lost
     module = getattr(library, MODULES[ending])
     if ending != "med":
         module.write(path, mesh)
@@ -190,6 +196,44 @@ def write(made: Result | Mesh, path: str) -> list[str]:
     with open(path, "wb") as file:
         file.write(image.getbuffer())
     return lost
+
+
+def files_beside(path: str) -> list[str]:
+    """Other files that hold a part of that one: XDMF has its numbers in one of HDF5."""
+    return [os.path.splitext(path)[0] + ".h5"] if _ending(path) in XDMF else []
+
+
+def _write_xdmf(mesh: meshio.Mesh, path: str) -> None:
+    """HDF5 in memory, as meshio does not close its file: where a disk is full, the process ends there, or nobody hears
+    of it."""
+    import h5py  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    import numpy as np
+
+    (beside,) = files_beside(path)
+    image, root = io.BytesIO(), ElementTree.Element("Xdmf", Version="3.0")
+    grid = ElementTree.SubElement(ElementTree.SubElement(root, "Domain"), "Grid", Name="Grid")
+    with h5py.File(image, "w") as numbers:
+        def add(values: Any, what: str, **words: str) -> None:
+            """An element whose values are a data set."""
+            name, rows = f"data{len(numbers)}", np.asarray(values)
+            numbers.create_dataset(name, data=rows, compression="gzip")
+            item = ElementTree.SubElement(
+                ElementTree.SubElement(grid, what, words), "DataItem", DataType=XDMF_TYPES[rows.dtype.kind],
+                Dimensions=" ".join(str(size) for size in rows.shape), Format="HDF", Precision=str(rows.dtype.itemsize))
+            item.text = f"{os.path.basename(beside)}:/{name}"
+
+        faces = mesh.cells[0].data
+        add(mesh.points, "Geometry", GeometryType="XYZ")
+        add(faces, "Topology", TopologyType="Triangle", NumberOfElements=str(len(faces)), NodesPerElement="3")
+        of_faces = {name: parts[0] for name, parts in mesh.cell_data.items()}
+        for center, data in (("Node", mesh.point_data), ("Cell", of_faces)):
+            for name, values in data.items():
+                width = values.shape[1] if values.ndim == 2 else 1
+                add(values, "Attribute", Name=name, Center=center,
+                    AttributeType={1: "Scalar", 2: "Vector", 3: "Vector", 6: "Tensor6", 9: "Tensor"}.get(width, "Matrix"))
+    for name, content in ((beside, image.getbuffer()), (path, ElementTree.tostring(root))):
+        with open(name, "wb") as file:
+            file.write(content)
 
 
 def _fit_gmsh(mesh: Any) -> None:
@@ -203,7 +247,7 @@ def _fit_gmsh(mesh: Any) -> None:
 
 def check(path: str) -> Any:
     """The package, with the one that it needs for such a file."""
-    if _ending(path) in ("med", "xdmf", "xmf"):
+    if _ending(path) in ("med", *XDMF):
         package("h5py", f"{path}: this format")
     return package("meshio", f"{path}: this format")
 

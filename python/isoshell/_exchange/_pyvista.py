@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Iterator, Optional
 
 from .._errors import Error
 from .._inputs import Mesh, Points, Volume
+from .._isoshell import ErrorCode
 from . import package
 from ._give import given_of
 from ._take import Taker, joined
@@ -139,5 +140,27 @@ def read(path: str, options: dict[str, Any]) -> Any:
 
 def write(made: Result | Mesh, path: str) -> list[str]:
     """Returns what the file does not hold: nothing."""
-    given(made).save(path)
+    check(path)
+    with open(path, "wb") as file:
+        file.write(_image(given(made), path))
+    return []
+
+
+def _image(data: pyvista.PolyData, path: str) -> bytes:
+    """The file, in memory: VTK ends the process where a disk is full."""
+    from vtkmodules.vtkIOLegacy import vtkPolyDataWriter  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter  # type: ignore[import-not-found, import-untyped, unused-ignore]
+
+    is_xml = path.lower().endswith(".vtp")
+    writer = vtkXMLPolyDataWriter() if is_xml else vtkPolyDataWriter()
+    writer.SetDataModeToBinary() if is_xml else writer.SetFileTypeToBinary()
+    writer.SetInputData(data)
+    writer.SetWriteToOutputString(True)
+    if not writer.Write():
+        raise Error(f"{path}: VTK does not write it", ErrorCode.UNWRITABLE_OUTPUT, "write")
+    return bytes(writer.GetOutputString().encode() if is_xml else writer.GetOutputStdString())
+
+
+def files_beside(path: str) -> list[str]:
+    """Other files that hold a part of that one: none."""
     return []

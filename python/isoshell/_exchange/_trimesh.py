@@ -133,3 +133,8 @@ def write(made: Result | Mesh, path: str) -> list[str]:
     scene = library.Scene([library.Trimesh(made.vertices, made.faces, process=False)])
     scene.export(path)
     return [*mesh.of_vertices, *mesh.of_faces]
+
+
+def files_beside(path: str) -> list[str]:
+    """Other files that hold a part of that one: none."""
+    return []

@@ -95,20 +95,46 @@ def test_a_format_that_is_named_is_that_of_the_file_whatever_its_ending(tmp_path
     assert isoshell.mesh_info(path, input_format="ply", ref=path, ref_format="ply")["distance"]
 
 
-@pytest.mark.parametrize("ending, package", [("vtp", "pyvista"), ("msh", "meshio"), ("usda", "pxr")])
-def test_a_result_never_replaces_its_source(tmp_path, ball, ending, package):
+@pytest.mark.parametrize("ending, package", [("ply", "numpy"), ("vtp", "pyvista"), ("xdmf", "h5py"), ("usda", "pxr")])
+def test_a_result_replaces_its_source_when_asked_to_and_where_that_is_not_read_again(tmp_path, ball, ending, package):
     pytest.importorskip(package)
     path = tmp_path / f"a.1.{ending}"
     isoshell.remesh(ball, **SMALL).save(path)
     kept = path.read_bytes()
-    for source in [path] + ([f"{path}:/World"] if ending == "usda" else []):
+    with pytest.raises(isoshell.Error, match="exists already.*force"):
+        isoshell.remesh(path, output=path, **SMALL)
+    if ending == "usda":
+        refused = [{"source": path}, {"source": f"{path}:/World"}]
+    else:
+        pytest.importorskip("k3d")
+        refused = [{"source": path, "report": tmp_path / "page.html"}]
+    for words in refused:
         with pytest.raises(isoshell.Error, match="are one file") as caught:
-            isoshell.remesh(source, output=path, force=True, **SMALL)
+            isoshell.remesh(output=path, force=True, **words, **SMALL)
         assert caught.value.code == ErrorCode.USAGE
     with pytest.raises(isoshell.Error, match="are one file"):
         pattern = tmp_path / f"a.#.{ending}"
-        isoshell.remesh_sequence(pattern, frames="1-1", output=pattern, force=True, **SMALL)
+        list(isoshell.remesh_sequence(pattern, frames="1-1", output=pattern, force=True, **SMALL))
     assert path.read_bytes() == kept
+    if ending != "usda":
+        assert len(isoshell.remesh(path, output=path, force=True, vertices=80, resolution=32).vertices) == 80
+        assert len(isoshell.remesh(path, **SMALL).vertices) == 100 and path.read_bytes() != kept
+
+
+def test_the_numbers_of_xdmf_are_a_file_that_is_checked_before_a_run(tmp_path, ball):
+    pytest.importorskip("h5py")
+    target, numbers = tmp_path / "o.xdmf", tmp_path / "o.h5"
+    for words in ({"stats": numbers}, {"report": numbers}):
+        with pytest.raises(isoshell.Error, match=r"o\.h5.* are one file"):
+            isoshell.remesh(tmp_path / "absent.obj", output=target, **words)
+    numbers.write_text("mine")
+    with pytest.raises(isoshell.Error, match=r"o\.h5: exists already") as caught:
+        isoshell.remesh(tmp_path / "absent.obj", output=target)
+    assert caught.value.code == ErrorCode.UNWRITABLE_OUTPUT and os.listdir(tmp_path) == ["o.h5"]
+    with pytest.raises(isoshell.Error, match=r"o\.h5: exists already"):
+        isoshell.remesh(ball, **SMALL).save(target)
+    assert numbers.read_text() == "mine" and os.listdir(tmp_path) == ["o.h5"]
+    assert as_ball(isoshell.remesh(ball, output=target, force=True, **SMALL)) and as_ball(isoshell.remesh(target, **SMALL))
 
 
 def test_recenter_is_refused_before_a_run_where_the_format_has_none(tmp_path):
@@ -179,9 +205,9 @@ def test_what_meshio_prints_is_not_caught(tmp_path, ball, monkeypatch, capsys):
     assert as_ball(isoshell.remesh(tmp_path / "in.vtu", **SMALL)) and capsys.readouterr().out == "another thread's words\n"
 
 
-@pytest.mark.parametrize("ending", ["vtk", "vtu", "msh", "med", "inp", "3mf"])
+@pytest.mark.parametrize("ending", WRITTEN)
 def test_a_disk_that_is_full_is_told_with_the_name_of_the_file(tmp_path, ball, ending):
-    for package in {"vtk": ["pyvista"], "3mf": ["lxml"]}.get(ending, ["meshio", "h5py"]):
+    for package in {"vtk": ["pyvista"], "vtp": ["pyvista"], "3mf": ["lxml"]}.get(ending, ["meshio", "h5py"]):
         pytest.importorskip(package)
     source, target = write_obj(tmp_path / "ball.obj", *ball), tmp_path / f"o.{ending}"
     code = """if True:
@@ -194,7 +220,8 @@ def test_a_disk_that_is_full_is_told_with_the_name_of_the_file(tmp_path, ball, e
             print(error.code.name, error)"""
     done = subprocess.run([sys.executable, "-c", code, source, target], capture_output=True, text=True, timeout=FOREVER)
     assert done.returncode == 0 and done.stdout.startswith(f"UNWRITABLE_OUTPUT {target}: "), done.stdout + done.stderr
-    assert "Success" not in done.stdout and os.listdir(tmp_path) == ["ball.obj"]
+    assert "Success" not in done.stdout and "Traceback" not in done.stderr, done.stderr
+    assert os.listdir(tmp_path) == ["ball.obj"]
 
 
 def test_saving_says_what_a_format_does_not_hold(tmp_path, ball):

@@ -144,13 +144,14 @@ def test_a_damaged_journal_is_told_of_and_mended_by_the_next_run(finished, tmp_p
     out = tmp_path / "out"
     shutil.copytree(finished / "out", out)
     before = digests_of(out)
-    for file in journal_of(out):
+    damaged = journal_of(out)
+    for file in damaged:
         file.write_bytes(file.read_bytes().replace(b'"state"', b'"stale"').replace(b'"began"', b'"begun"'))
     done = farm("status", out)
     assert done.returncode == 3 and "checksum" in done.stderr and "Traceback" not in done.stderr
     done = farm("run", finished / "assets", out, *SMALL)
     assert done.returncode == 9 and "4 damaged rows are passed over" in done.stderr, done.stderr
-    assert journal_of(out)[0].name in done.stderr and "line 1" in done.stderr
+    assert damaged[0].name in done.stderr and "line 1" in done.stderr
     assert "3 assets: 2 done, 1 failed" in farm("status", out).stdout
     after = manifest.read(str(out)).rows
     assert {name: (row["digest"], row["output_sha256"]) for name, row in after.items()

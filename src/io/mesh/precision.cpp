@@ -1,31 +1,16 @@
 #include "io/mesh/precision.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
-#include "io/bytes/row_buffer.h"
 #include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
-
-/// Of a value for each index, joined in any order.
-template <class Value, class At, class Join>
-Value joined_over(size_t count, Value start, At at, Join join) {
-  return tbb::parallel_reduce(
-      tbb::blocked_range<int64_t>(0, int64_t(count), kRowsPerBlock), start,
-      [&](const tbb::blocked_range<int64_t>& r, Value value) {
-        for (int64_t i = r.begin(); i < r.end(); ++i) value = join(value, at(size_t(i)));
-        return value;
-      },
-      join);
-}
 
 constexpr auto kLarger = [](double a, double b) { return std::max(a, b); };
 constexpr auto kSmaller = [](double a, double b) { return std::min(a, b); };
@@ -86,11 +71,16 @@ int64_t count_lost_triangles(const TriangleMesh& mesh, const Placement& placemen
 }
 
 double largest_move_world(const TriangleMesh& mesh, const Placement& placement) {
-  const auto moved = [&](size_t i) {
-    const WorldPoint& p = mesh.vertices[i];
-    return length(placement.written(p) - placement.about_origin(p));
+  const auto moved = [](double number, double offset, double in_file) {
+    const double less = number - offset, back = less - number;
+    const double rest = (number - (less - back)) - (offset + back);  // number - offset is less + rest, exactly
+    return (in_file - less) - rest;
   };
-  return joined_over(mesh.vertices.size(), 0.0, moved, kLarger);
+  const auto moved_at = [&](size_t i) {
+    const WorldPoint &p = mesh.vertices[i], &o = placement.offset, q = placement.in_file(p);
+    return length({moved(p.x, o.x, q.x), moved(p.y, o.y, q.y), moved(p.z, o.z, q.z)});
+  };
+  return joined_over(mesh.vertices.size(), 0.0, moved_at, kLarger);
 }
 
 bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel_ranges.h"
 #include "geometry/box.h"
 #include "geometry/world_vector.h"
 
@@ -26,9 +27,15 @@ double longest_edge_sq(const TriangleSoup& soup, const Face& f) {
 }
 
 bool has_long_edge(const TriangleSoup& soup) {
-  const double least = kLongEdgeOfBox * longest_side(box_of(soup.vertices, soup.triangles));
-  return std::any_of(soup.triangles.begin(), soup.triangles.end(),
-                     [&](const Face& f) { return longest_edge_sq(soup, f) > least * least; });
+  const auto box_at = [&](size_t f) {
+    const auto& [a, b, c] = soup.triangles[f];
+    return box_of(soup.vertices[a], soup.vertices[b], soup.vertices[c]);
+  };
+  const auto longest_sq_at = [&](size_t f) { return longest_edge_sq(soup, soup.triangles[f]); };
+  const size_t faces = soup.triangles.size();
+  const double side = longest_side(joined_over(faces, box_of_none(), box_at, joined<WorldPoint>));
+  const double longest_sq = joined_over(faces, 0., longest_sq_at, [](double a, double b) { return std::max(a, b); });
+  return longest_sq > kLongEdgeOfBox * side * kLongEdgeOfBox * side;
 }
 
 WorldBox box_of_body(const TriangleSoup& soup) {
@@ -138,14 +145,14 @@ double area_of(const TriangleSoup& soup) {
 }  // namespace
 
 std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup,
-                                                   const std::function<double(double)>& edge_world,
-                                                   FarVertexReport& report) {
-  if (soup.triangles.empty() || !has_long_edge(soup)) return {};
+                                                   const std::function<double(double)>& edge_world) {
+  if (soup.far.vertices > 0 || soup.triangles.empty() || !has_long_edge(soup)) return {};
   FarVertices far(soup);
   const std::map<uint32_t, Needle> needles = far.needles();
   if (needles.empty()) return {};
   const double widest_world = edge_world(area_of(soup));
   std::vector<std::pair<uint32_t, WorldPoint>> moved;
+  FarVertexReport report;
   for (const auto& [leader, needle] : needles) {
     const std::optional<WorldPoint> middle = middle_of_narrow(soup.vertices, needle, widest_world);
     if (!middle) continue;
@@ -159,6 +166,7 @@ std::optional<TriangleSoup> pull_back_far_vertices(const TriangleSoup& soup,
   if (moved.empty()) return {};
   report.vertices = int64_t(moved.size());
   TriangleSoup made = soup;
+  made.far = report;
   for (const auto& [v, at] : moved) made.vertices[v] = at;
   return made;
 }

@@ -198,6 +198,7 @@ PartRegions part_regions(const TriangleSoup& soup, const std::string& how, Conte
   turn_sheets(out.walls);
   out.walls.faces_in_file = soup.faces_in_file;
   out.walls.dirt = soup.dirt;
+  out.walls.far = soup.far;
   return out;
 }
 
