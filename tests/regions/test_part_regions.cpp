@@ -3,12 +3,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "isoshell/io/mesh_file.h"
 #include "isoshell/part_regions.h"
 #include "isoshell/region_census.h"
 #include "isoshell/remesh.h"
 #include "regions/part_soups.h"
 #include "regions/region_oracle.h"
 #include "support/refusals.h"
+#include "support/source_folder.h"
 #include "support/test_context.h"
 
 using namespace isoshell;
@@ -383,4 +385,13 @@ TEST_CASE("part meshes: three sheets that meet in a line share it") {
   const RegionCensus census = take_region_census(mesh, context);
   CHECK(census.regions.empty());
   CHECK(census.curve_edges > 5);
+}
+
+TEST_CASE("part meshes: sheets that touch at a point, where a curve of one of them ends") {
+  TestContext context;
+  RemeshOptions options;
+  options.vertices = 300;
+  options.regions = "components";
+  const RemeshResult result = remesh(read_mesh(source_folder() + "/tests/data/sheets_at_a_point.stl"), options, context);
+  CHECK(take_region_census(result.mesh, context).is_sound());
 }

@@ -53,11 +53,15 @@ void WallMesh::list_vertices(uint32_t last) {
   const CutSurface& cut = lookup_->cut();
   vertices_.resize(size_t(last) + 1);
   around_.resize(vertices_.size());
+  // Where sheets touch at a point, a curve that ends there is on the border of some of them alone: a copy there is
+  // home.
+  std::vector<char> has_place(vertices_.size(), 0);
   for (size_t c = 0; c < cut.corner.size(); ++c) {
-    const uint32_t number = cut.fine->triangles[c / 3][c % 3];
-    if (number > last) continue;
-    vertices_[number].home = cut.corner[c];
-    vertices_[number].position = lookup_->position(cut.corner[c]);
+    const uint32_t number = cut.fine->triangles[c / 3][c % 3], copy = cut.corner[c];
+    if (number > last || has_place[number]) continue;
+    has_place[number] = cut.place[copy] != kNone;
+    vertices_[number].home = copy;
+    vertices_[number].position = lookup_->position(copy);
   }
 }
 
