@@ -25,7 +25,7 @@ struct UnionReport {
   int64_t inner_surfaces = 0;        ///< boundaries of hollows, kept
   int64_t dropped_inner = 0;         ///< components in others, dropped because only outer ones are wanted
   int64_t cut_faces = 0;             ///< meet another component; cut along it, and what lies inside dropped
-  int64_t internal_faces = 0;        ///< between parts that touch, with solid on both sides; dropped
+  int64_t internal_faces = 0;        ///< pieces of walls between parts that touch; dropped
   int64_t separated_edges = 0;       ///< of more than two faces, where sheets were moved apart
   int64_t left_components = 0;       ///< open, and apart from those that were united
   std::string given_up;              ///< why components that meet were not united; empty otherwise

@@ -9,7 +9,7 @@ from typing import Callable, Iterator, Type, Union
 from ._errors import Error, words_of
 from ._isoshell import ErrorCode
 
-Path = Union[str, "os.PathLike[str]"]
+Path = Union[str, os.PathLike[str]]
 
 
 def path_text(path: Path) -> str:

@@ -106,7 +106,7 @@ case "$name" in
       expect "bash, $named, a choice" "keep" "$(in_bash $named a.ply b.ply --boundary k)"
     done
     expect "bash, options of a command" "--ref --ref-format" "$(in_bash info --ref)"
-    expect "bash, MESH" "scan.ply shells" "$(in_bash info s)"
+    expect "bash, MESH" "scan.ply scan.usda shells" "$(in_bash info s)"
     expect "bash, options of a command of a command" "--retry-failed" "$(in_bash farm run --ret)"
     expect "bash, a folder" "shells" "$(in_bash farm run shells s)"
     if have fish; then
@@ -114,7 +114,7 @@ case "$name" in
       expect "fish, a command of a command" "run" "$(in_fish farm ru)"
       expect "fish, INPUT" "scan.ply scan.usda scan.vdb shells/" "$(in_fish remesh s)"
       expect "fish, INPUT without a command" "scan.ply scan.usda scan.vdb shells/" "$(in_fish a.ply s)"
-      expect "fish, MESH" "scan.ply shells/" "$(in_fish info s)"
+      expect "fish, MESH" "scan.ply scan.usda shells/" "$(in_fish info s)"
       expect "fish, a choice" "close keep" "$(in_fish remesh a.ply b.ply --boundary "")"
       expect "fish, options of a command of a command" "--retry-failed" "$(in_fish farm run --retr)"
     fi
@@ -124,7 +124,7 @@ case "$name" in
       zsh_shows "zsh, INPUT" "^scan.ply +scan.usda +scan.vdb$" "$name remesh scan"
       zsh_shows "zsh, INPUT without a command" "^scan.ply +scan.usda +scan.vdb$" "$name scan"
       zsh_shows "zsh, OUTPUT without a command" "^scan.ply +scan.usda +scan.vdb$" "$name a.ply --vertices 10 scan"
-      zsh_shows "zsh, MESH" "$name info scan.ply" "$name info sca"
+      zsh_shows "zsh, MESH" "^scan.ply +scan.usda$" "$name info sca"
       zsh_shows "zsh, a choice" "^close +keep" "$name remesh a.ply b.ply --boundary "
       zsh_shows "zsh, options of a command of a command" "$name farm run --retry-failed" "$name farm run --ret"
     fi

@@ -190,7 +190,7 @@ TEST_CASE("boolean union: boxes that share faces become one solid, with a ring o
           "[boolean_union]") {
   for (const int count : {2, 3, 5}) {
     const United u = check_union(boxes_in_a_row(count), count, 0);
-    CHECK(u.report.internal_faces == 4 * (count - 1));
+    CHECK(u.report.internal_faces == 2 * (count - 1));
     CHECK(u.report.swallowed_components == 0);
     CHECK(u.interfaces.size() == size_t(4 * (count - 1)));
     for (const auto& edge : u.interfaces) CHECK(edge[0].x == edge[1].x);

@@ -152,7 +152,7 @@ def _image(data: pyvista.PolyData, path: str) -> bytes:
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
     is_xml = path.lower().endswith(".vtp")
-    writer = vtkXMLPolyDataWriter() if is_xml else vtkPolyDataWriter()
+    writer: Any = vtkXMLPolyDataWriter() if is_xml else vtkPolyDataWriter()
     writer.SetDataModeToBinary() if is_xml else writer.SetFileTypeToBinary()
     writer.SetInputData(data)
     writer.SetWriteToOutputString(True)

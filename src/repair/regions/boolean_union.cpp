@@ -63,8 +63,7 @@ class Union {
         box_(box_of(soup.vertices, soup.triangles)),
         given_(weld_vertices(soup.vertices, soup.triangles).position),
         parts_(find_solid_parts(soup, context)),
-        is_cut_(soup.triangles.size(), 0),
-        is_internal_(soup.triangles.size(), 0) {}
+        is_cut_(soup.triangles.size(), 0) {}
 
   UnitedSoup united() {
     if (!are_solids()) return {soup_, {}};
@@ -169,7 +168,6 @@ class Union {
     if (!rule) rule = have_closed_chains(walls) ? SolidRule::winding : SolidRule::seen_from_back;
     OuterWalls outer = find_outer_walls(walls, cells, *rule);
     touching_.insert(touching_.end(), outer.touching.begin(), outer.touching.end());
-    for (const uint32_t f : outer.sources_touching) is_internal_[solids.source[f]] = 1;
     PiecedFaces pieces{std::move(outer.point), std::move(outer.face), std::move(outer.source)};
     for (uint32_t& f : pieces.source) f = solids.source[f];
     dissolve_cuts(pieces, given_among(pieces.point), box_);
@@ -211,7 +209,7 @@ class Union {
       (options_.outer_only ? report_.dropped_inner : report_.swallowed_components) += !stays;
     }
     report_.cut_faces = std::count(is_cut_.begin(), is_cut_.end(), 1);
-    report_.internal_faces = std::count(is_internal_.begin(), is_internal_.end(), 1);
+    report_.internal_faces = int64_t(touching_.size());
   }
 
   /// Faces in the order of the input, caps last.
@@ -257,7 +255,7 @@ class Union {
   const WorldBox box_;
   const std::vector<WorldPoint> given_;  ///< positions of the input, ascending
   const std::vector<SolidPart> parts_;
-  std::vector<uint8_t> is_cut_, is_internal_;  ///< per triangle of the input
+  std::vector<uint8_t> is_cut_;  ///< per triangle of the input
   std::vector<std::array<WorldPoint, 3>> touching_;
 };
 

@@ -92,7 +92,6 @@ OuterWalls find_outer_walls(const Walls& walls, const Cells& cells, SolidRule ru
     } else if (is_solid[front] && front != behind &&
                (change_behind(walls, w) == 0 || rule == SolidRule::seen_from_back)) {
       out.touching.push_back({walls.point[a], walls.point[b], walls.point[c]});
-      for (const FaceOnWall& on : walls.faces_on(w)) out.sources_touching.push_back(on.source);
     }
   }
   return out;

@@ -23,7 +23,6 @@ struct OuterWalls {
   std::vector<std::array<uint32_t, 3>> face;        ///< solid is behind it
   std::vector<uint32_t> source;                     ///< per face the smallest number of those on its wall
   std::vector<std::array<WorldPoint, 3>> touching;  ///< walls between parts that touch, which have solid on both sides
-  std::vector<uint32_t> sources_touching;           ///< of the faces on those
 };
 
 /// `have_closed_chains` where at every edge as many faces pass it one way as the other: their windings are known then.
