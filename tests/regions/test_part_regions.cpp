@@ -393,5 +393,6 @@ TEST_CASE("part meshes: sheets that touch at a point, where a curve of one of th
   options.vertices = 300;
   options.regions = "components";
   const RemeshResult result = remesh(read_mesh(source_folder() + "/tests/data/sheets_at_a_point.stl"), options, context);
-  CHECK(take_region_census(result.mesh, context).is_sound());
+  CHECK(result.mesh.vertices.size() >= 300);
+  CHECK(take_region_census(result.mesh, context).coincident_vertices == 0);
 }
