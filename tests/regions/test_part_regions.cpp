@@ -392,7 +392,8 @@ TEST_CASE("part meshes: sheets that touch at a point, where a curve of one of th
   RemeshOptions options;
   options.vertices = 300;
   options.regions = "components";
-  const RemeshResult result = remesh(read_mesh(source_folder() + "/tests/data/sheets_at_a_point.stl"), options, context);
+  const RemeshResult result =
+      remesh(read_mesh(source_folder() + "/tests/data/sheets_at_a_point.stl"), options, context);
   CHECK(result.mesh.vertices.size() >= 300);
   CHECK(take_region_census(result.mesh, context).coincident_vertices == 0);
 }
