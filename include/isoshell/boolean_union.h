@@ -20,10 +20,10 @@ struct UnionOptions {
 
 /// What was found among the components of a surface, and changed.
 struct UnionReport {
-  int64_t turned_components = 0;     ///< lay in no other and looked inward; turned
+  int64_t turned_components = 0;     ///< looked inward, or all did; turned
   int64_t swallowed_components = 0;  ///< wholly inside of solid; dropped
   int64_t inner_surfaces = 0;        ///< boundaries of hollows, kept
-  int64_t dropped_inner = 0;         ///< components in others, dropped because only outer ones are wanted
+  int64_t dropped_inner = 0;         ///< components in others, dropped where only outer ones are wanted
   int64_t cut_faces = 0;             ///< meet another component; cut along it, and what lies inside dropped
   int64_t internal_faces = 0;        ///< pieces of walls between parts that touch; dropped
   int64_t separated_edges = 0;       ///< of more than two faces, where sheets were moved apart
@@ -45,15 +45,14 @@ struct UnitedSoup {
 /// through edges are solids: they wind once around what they enclose, where they look outward; one that looks inward
 /// and lies in no other is turned first, all are when their volumes sum up to less than nothing, and one that looks
 /// inward in another bounds a hollow of it. Solid is where all wind more than 0 times in all; so rooms that walls
-/// enclose stay. Where edges have three faces, or faces do not agree, a component encloses what some of its faces look
-/// away from. The cuts are those of arrange_faces(), of 2^28 steps along the longest side. Faces that pass through
-/// others of their own component count as many times as they are around a place. Sheets of the union that would share
-/// an edge, of four faces or more, are moved into their solids there by sheet_gap_world each, so that the result is
-/// closed, and every edge has two faces.
-/// A soup in which nothing changes comes back as it is; so does one with a component that is open or whose faces do not
-/// agree, unless those with borders are to be kept, and one that cannot be united: the report says why.
-/// Throws: interrupted. Result: independent of threads. Cost: for n components sorts of the faces log n times, and the
-/// cuts.
+/// enclose stay. Where edges have more than two faces, whose sums are no closed surfaces, a component encloses what
+/// some of its faces look away from. The cuts are those of arrange_faces(), of 2^28 steps along the longest side. Faces
+/// that pass through others of their own component count as many times as they are around a place. Sheets of the union
+/// that would share an edge, of four faces or more, are moved into their solids there by sheet_gap_world each, so that
+/// the result is closed, and every edge has two faces. A soup in which nothing changes comes back as it is; so does one
+/// with a component that is open or whose faces do not agree, unless those with borders are to be kept, and one that
+/// cannot be united, of which the report says why. Throws: interrupted. Result: independent of threads. Cost: for n
+/// components sorts of the faces log n times, and the cuts.
 UnitedSoup boolean_union(const TriangleSoup& soup, const UnionOptions& options, UnionReport& report,
                          const Context& context);
 

@@ -57,6 +57,7 @@ class Repair {
       made_.changed = timed(report_, "mend", context_, [&] { return repaired(given_, plan_, report_.input.repair); });
       const SoupTopology left = measured();
       made_.topology = left.topology;
+      report_.input.united = {};
       unite(left, plan_.options.boundary == Boundary::keep);
     }
     const InputTopology& input = made_.topology;

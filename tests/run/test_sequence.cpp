@@ -160,7 +160,7 @@ TEST_CASE("sequence: a crisp part whose faces change keeps its creases and gets 
   CHECK(files_of(part) == files_of(request));
 }
 
-TEST_CASE("sequence: parts that come to touch along an edge are meshed where they cannot be cut", "[sequence]") {
+TEST_CASE("sequence: parts that come to touch along an edge keep their creases", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;
   SequenceRequest request = frames_in(folder, 2, [](int f) {
@@ -172,9 +172,10 @@ TEST_CASE("sequence: parts that come to touch along an edge are meshed where the
   request.after_frame = [&](int64_t, const RunResult& r) { made.push_back(r); };
   run_sequence(request, context);
   REQUIRE(made.size() == 2);
-  CHECK(made[0].record.report.features.kept_length_world == Approx(24).epsilon(0.001));
-  for (const RunResult& r : made) CHECK(check_mesh(r.mesh).is_closed_manifold());
-  CHECK(made[1].record.report.sheet.vertices > 0);
+  for (const RunResult& r : made) {
+    CHECK(r.record.report.features.kept_length_world == Approx(24).epsilon(0.001));
+    CHECK(check_mesh(r.mesh).is_closed_manifold());
+  }
 }
 
 TEST_CASE("sequence: frames with creases are the same with other threads, and resumed", "[sequence]") {

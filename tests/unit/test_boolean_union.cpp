@@ -257,6 +257,21 @@ TEST_CASE("boolean union: parts are cut only where they meet, and pieces are no 
   CHECK(u.soup.triangles.size() < 24 * 30);
 }
 
+TEST_CASE("boolean union: hollows that share an edge or a wall, overlap, or come first in the input, stay",
+          "[boolean_union]") {
+  const TriangleSoup block = box({0, 0, 0}, {10, 10, 10});
+  const auto hollow = [](WorldPoint lo, WorldPoint hi) { return inside_out(box(lo, hi)); };
+  check_union(together(block, together(hollow({2, 2, 2}, {3, 3, 3}), hollow({3, 2, 2}, {4, 3, 3}))), 998, 0, 2);
+  UnionOptions options;
+  options.sheet_gap_world = 1e-6;
+  const United apart =
+      united(together(block, together(hollow({2, 2, 2}, {3, 3, 3}), hollow({3, 3, 2}, {4, 4, 3}))), options);
+  CHECK(isoshell::volume(apart.soup) == Approx(998));
+  check_union(together(block, together(hollow({2, 2, 2}, {4, 4, 4}), hollow({3, 3, 3}, {5, 5, 5}))), 1000 - 15, 0, 2);
+  const TriangleSoup shells = together(hollow({2, 2, 2}, {4, 4, 4}), inside_out(block));
+  check_union(together(shells, box({20, 0, 0}, {40, 20, 20})), 1000 - 8 + 8000, 0, 3);
+}
+
 TEST_CASE("boolean union: an open part stays as it is beside others, if it is to be kept and meets none",
           "[boolean_union]") {
   TriangleSoup sheet;

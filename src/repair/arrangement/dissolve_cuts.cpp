@@ -38,7 +38,7 @@ class Dissolver {
   void run() {
     find_borders();
     for (uint32_t s = 0; s < is_left_.size(); ++s)
-      if (pieces_.in(s).size == 1 || !is_flat(s)) leave(s);
+      if (pieces_.in(s).size <= 1 || !is_flat(s)) leave(s);
     keep_ends();
     keep_bent_borders();
     triangulate_all();

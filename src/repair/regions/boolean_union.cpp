@@ -1,6 +1,7 @@
 #include "isoshell/boolean_union.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -32,6 +33,11 @@ void append(Solids& to, const Solids& more) {
   to.soup.vertices.insert(to.soup.vertices.end(), more.soup.vertices.begin(), more.soup.vertices.end());
   for (const auto& [a, b, c] : more.soup.triangles) to.soup.triangles.push_back({a + shift, b + shift, c + shift});
   to.source.insert(to.source.end(), more.source.begin(), more.source.end());
+  to.bound_their_union = to.bound_their_union && more.bound_their_union;
+}
+
+void turn(Solids& solids) {
+  for (auto& [a, b, c] : solids.soup.triangles) std::swap(b, c);
 }
 
 void weld(TriangleSoup& soup) {
@@ -48,8 +54,9 @@ bool is_edge_before(const std::array<WorldPoint, 2>& a, const std::array<WorldPo
   return a[0] == b[0] ? is_before(a[1], b[1]) : is_before(a[0], b[0]);
 }
 
-/// What cannot be cut.
+/// What cannot be united.
 struct Failure {
+  const char* why;
   WorldPoint at;
 };
 
@@ -68,11 +75,13 @@ class Union {
   UnitedSoup united() {
     if (!are_solids()) return {soup_, {}};
     std::vector<uint32_t> outer;
-    for (uint32_t p = 0; p < parts_.size(); ++p)
-      if (parts_[p].shape != PartShape::open && parts_[p].container == kNoContainer) outer.push_back(p);
+    for (uint32_t p = 0; p < parts_.size(); ++p) {
+      if (parts_[p].shape == PartShape::open) continue;
+      (parts_[p].container == kNoContainer ? outer : hollows_[parts_[p].container]).push_back(p);
+    }
     try {
       if (outer.empty()) return {soup_, {}};
-      Solids all = joined(outer, 0, outer.size());
+      Solids all = joined(outer, 0, outer.size(), [&](uint32_t part) { return with_hollows(part); });
       if (options_.outer_only || !all.bound_their_union) all = outer_faces(std::move(all), rule());
       leave_open_parts(all);
       count(all);
@@ -83,7 +92,7 @@ class Union {
       return result_of(std::move(all));
     } catch (const Failure& failure) {
       report_ = {};
-      report_.given_up = "the faces cannot be cut along each other there";
+      report_.given_up = failure.why;
       report_.at = failure.at;
       return {soup_, {}};
     }
@@ -98,28 +107,33 @@ class Union {
   }
 
   /// In halves, so that what lies inside of few is cut away before it meets many.
-  Solids joined(const std::vector<uint32_t>& outer, size_t begin, size_t end) {
-    if (end - begin == 1) return with_hollows(outer[begin]);
+  template <class SolidOf>
+  Solids joined(const std::vector<uint32_t>& parts, size_t begin, size_t end, const SolidOf& solid_of) {
+    if (end - begin == 1) return solid_of(parts[begin]);
     const size_t middle = begin + (end - begin) / 2;
-    Solids first = joined(outer, begin, middle);
-    return joined(std::move(first), joined(outer, middle, end));
+    Solids first = joined(parts, begin, middle, solid_of);
+    return joined(std::move(first), joined(parts, middle, end, solid_of));
   }
 
+  /// Less the union of its hollows, as if these were solids.
   Solids with_hollows(uint32_t part) {
-    Solids solid = solid_of(part), hollows;
-    for (const SolidPart& p : parts_)
-      if (p.container == part) append(hollows, solid_of(uint32_t(&p - parts_.data())));
-    if (hollows.source.empty()) return solid;
-    return joined(std::move(solid), hollows);
+    const auto found = hollows_.find(part);
+    if (found == hollows_.end()) return solid_of(part);
+    const std::vector<uint32_t>& parts = found->second;
+    Solids hollows = joined(parts, 0, parts.size(), [&](uint32_t hollow) { return solid_of(hollow); });
+    turn(hollows);
+    return joined(solid_of(part), hollows);
   }
 
+  /// As it looks outward; what is open as it is.
   Solids solid_of(uint32_t part) {
     const SolidPart& p = parts_[part];
+    const bool is_turned = p.is_turned != (p.container != kNoContainer);
     Solids solid;
     solid.source = p.triangles;
     for (const uint32_t t : p.triangles) {
       Corners corner = soup_.triangles[t];
-      if (p.is_turned) std::swap(corner[1], corner[2]);
+      if (is_turned) std::swap(corner[1], corner[2]);
       for (uint32_t& v : corner) {
         solid.soup.vertices.push_back(soup_.vertices[v]);
         v = uint32_t(solid.soup.vertices.size() - 1);
@@ -146,7 +160,7 @@ class Union {
   ArrangedFaces arranged(const Solids& solids, size_t first_of_second) {
     WorldPoint failed_at{0, 0, 0};
     std::optional<ArrangedFaces> faces = arrange_faces(solids.soup, failed_at, context_, {first_of_second, box_});
-    if (!faces) throw Failure{failed_at};
+    if (!faces) throw Failure{"the faces cannot be cut along each other there", failed_at};
     for (size_t f = 1; f < faces->source.size(); ++f)
       if (faces->source[f] == faces->source[f - 1]) is_cut_[solids.source[faces->source[f]]] = 1;
     return std::move(*faces);
@@ -169,13 +183,26 @@ class Union {
     OuterWalls outer = find_outer_walls(walls, cells, *rule);
     touching_.insert(touching_.end(), outer.touching.begin(), outer.touching.end());
     PiecedFaces pieces{std::move(outer.point), std::move(outer.face), std::move(outer.source)};
-    for (uint32_t& f : pieces.source) f = solids.source[f];
+    // Pieces of pieces have numbers of their own here, so that no array is as long as the input.
+    const std::vector<uint32_t> triangles = number_sources(pieces.source, solids.source);
     dissolve_cuts(pieces, given_among(pieces.point), box_);
+    for (uint32_t& f : pieces.source) f = triangles[f];
     Solids result;
     result.soup.vertices = std::move(pieces.point);
     result.soup.triangles = std::move(pieces.face);
     result.source = std::move(pieces.source);
     return result;
+  }
+
+  /// Numbers the triangles of the input that faces are of by their order. Result: per number the triangle.
+  static std::vector<uint32_t> number_sources(std::vector<uint32_t>& source, const std::vector<uint32_t>& triangle_of) {
+    std::vector<uint32_t> triangles;
+    for (uint32_t& f : source) triangles.push_back(f = triangle_of[f]);
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    for (uint32_t& f : source)
+      f = uint32_t(std::lower_bound(triangles.begin(), triangles.end(), f) - triangles.begin());
+    return triangles;
   }
 
   std::vector<uint8_t> given_among(const std::vector<WorldPoint>& points) const {
@@ -196,7 +223,7 @@ class Union {
     if (report_.left_components == 0) return;
     WorldPoint at{0, 0, 0};
     const std::optional<ArrangedFaces> faces = arrange_faces(all.soup, at, context_, {first_of_second, box_});
-    if (!faces || faces->face.size() != all.source.size()) throw Failure{at};
+    if (!faces || faces->cut_faces > 0) throw Failure{"a component that is open meets them", at};
   }
 
   void count(const Solids& all) {
@@ -255,7 +282,8 @@ class Union {
   const WorldBox box_;
   const std::vector<WorldPoint> given_;  ///< positions of the input, ascending
   const std::vector<SolidPart> parts_;
-  std::vector<uint8_t> is_cut_;  ///< per triangle of the input
+  std::map<uint32_t, std::vector<uint32_t>> hollows_;  ///< per part those that bound hollows of it
+  std::vector<uint8_t> is_cut_;                        ///< per triangle of the input
   std::vector<std::array<WorldPoint, 3>> touching_;
 };
 

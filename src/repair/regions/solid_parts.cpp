@@ -1,6 +1,8 @@
 // See solid_parts.h.
 #include "repair/regions/solid_parts.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/index_sets.h"
@@ -34,8 +36,9 @@ class PartFinder {
     find_parts();
     measure();
     double all = 0;
-    for (const double v : volume6_) all += v;
-    for (SolidPart& p : parts_) p.is_turned = all < 0;
+    for (size_t p = 0; p < parts_.size(); ++p)
+      if (is_solid(p)) all += volume6_[p];
+    for (size_t p = 0; p < parts_.size(); ++p) parts_[p].is_turned = is_solid(p) && all < 0;
     find_containers();
     return std::move(parts_);
   }
@@ -82,21 +85,22 @@ class PartFinder {
     }
   }
 
-  bool looks_inward(uint32_t part) const { return (volume6_[part] < 0) != parts_[part].is_turned; }
+  bool is_solid(size_t part) const { return parts_[part].shape != PartShape::open; }
+  bool looks_inward(uint32_t part) const { return is_solid(part) && (volume6_[part] < 0) != parts_[part].is_turned; }
 
-  /// What looks inward and lies in no other part is turned once more.
+  /// What looks inward and lies in no other part is turned once more; the largest first, as others may lie in them.
   void find_containers() {
-    std::vector<uint32_t> first_face(parts_.size(), kNoContainer);
-    bool is_any = false;
+    std::vector<uint32_t> first_face(parts_.size(), kNoContainer), inward;
     for (uint32_t f = 0; f < face_.size(); ++f)
       if (looks_inward(part_[f]) && first_face[part_[f]] == kNoContainer) {
         first_face[part_[f]] = f;
-        is_any = true;
+        inward.push_back(part_[f]);
       }
-    if (!is_any) return;
+    if (inward.empty()) return;
+    std::stable_sort(inward.begin(), inward.end(),
+                     [&](uint32_t a, uint32_t b) { return std::abs(volume6_[a]) > std::abs(volume6_[b]); });
     const RayColumns rays(point_, face_);
-    for (uint32_t p = 0; p < parts_.size(); ++p) {
-      if (first_face[p] == kNoContainer) continue;
+    for (const uint32_t p : inward) {
       check_cancel(context_, "unite");
       parts_[p].container = smallest_around(p, first_face[p], rays);
       if (parts_[p].container == kNoContainer) parts_[p].is_turned = !parts_[p].is_turned;
@@ -111,7 +115,8 @@ class PartFinder {
     rays.for_each_crossing(middle, face, [&](uint32_t g, int sign) { winding[part_[g]] += sign; });
     uint32_t smallest = kNoContainer;
     for (const auto& [other, times] : winding) {
-      if (other == part || times == 0 || looks_inward(other) || !is_within(box_[part], box_[other])) continue;
+      if (other == part || times == 0 || !is_solid(other) || looks_inward(other) || !is_within(box_[part], box_[other]))
+        continue;
       if (smallest == kNoContainer || std::abs(volume6_[other]) < std::abs(volume6_[smallest])) smallest = other;
     }
     return smallest;

@@ -23,7 +23,7 @@ struct SolidPart {
   std::vector<uint32_t> triangles;  ///< of the soup, ascending; none with two corners in one place
   PartShape shape = PartShape::closed;
   bool is_turned = false;             ///< is to be turned, so that it looks outward or bounds a hollow
-  uint32_t container = kNoContainer;  ///< the smallest part around one that looks inward
+  uint32_t container = kNoContainer;  ///< of one that looks inward the smallest part with it inside of its box
 };
 
 /// In the order of their first triangles. Throws: interrupted. Cost: sorts of the vertices and edges, and a ray from
