@@ -34,9 +34,9 @@ struct ArrangedFaces {
 /// edge of both, also where a face ends within another. Faces that lie on each other have the same parts. Where
 /// cuts that are rounded do not come to an end, less is made one, down to an eighth of that. None where they do not
 /// then either, or where that takes far more work than any parts do: then `failed_at` is a place where they cross.
-/// Of two groups, which are arranged each, the triangles near the other group are looked at, and no others. Throws:
-/// interrupted. Result: independent of threads. Cost: a tree of the boxes of all triangles that are looked at, pairs
-/// whose boxes meet, and rounds over those that were cut; in all no more than is proportional to the triangles.
+/// Of two groups, which are arranged each, the triangles near the other group are looked at, and any that intersect.
+/// Throws: interrupted. Result: independent of threads. Cost: a tree of the boxes of all triangles that are looked at,
+/// pairs whose boxes meet, and rounds over those that were cut; in all no more than is proportional to the triangles.
 std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context,
                                            const ArrangedGroups& groups = {});
 

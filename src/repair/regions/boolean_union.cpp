@@ -83,11 +83,11 @@ class Union {
       if (outer.empty()) return {soup_, {}};
       Solids all = joined(outer, 0, outer.size(), [&](uint32_t part) { return with_hollows(part); });
       if (options_.outer_only || !all.bound_their_union) all = outer_faces(std::move(all), rule());
-      leave_open_parts(all);
-      count(all);
       weld(all.soup);
       report_.separated_edges =
           separate_sheets(options_.sheet_gap_world, all.soup.vertices, all.soup.triangles, all.source);
+      leave_open_parts(all);
+      count(all);
       if (!report_.changed_anything()) return {soup_, {}};
       return result_of(std::move(all));
     } catch (const Failure& failure) {

@@ -19,13 +19,12 @@ class Separation {
              std::vector<uint32_t>& source)
       : gap_world_(gap_world), point_(point), face_(face), source_(source) {}
 
-  /// Vertices are copied. Pairs that still share an edge afterwards, both ends of which their sheets have in common,
-  /// are divided at its middle, and copied once more.
+  /// Edges both ends of which two sheets have in common are divided at their middles, and vertices copied. Each look
+  /// divides an edge, and no edge is divided twice.
   int64_t run() {
     if (!find_pairs()) return 0;
     const int64_t edges = int64_t(shared_.size());
-    divide_shared();
-    find_pairs();
+    while (divide_shared()) find_pairs();
     copy_vertices();
     return edges;
   }
@@ -78,10 +77,12 @@ class Separation {
     return face_[half_edge / 3][half_edge % 3] == u ? std::array{here, next} : std::array{next, here};
   }
 
-  /// At the middle of edges of which two pairs would be one again.
-  void divide_shared() {
+  /// At the middle of edges of which two pairs would be one again, of each face one edge at a time. Result: whether
+  /// any.
+  bool divide_shared() {
+    bool is_any = false;
     std::vector<uint8_t> is_divided(face_.size(), 0);
-    for (SharedEdge& e : shared_) {
+    for (const SharedEdge& e : shared_) {
       std::vector<std::array<uint32_t, 2>> fans;
       for (const auto& pair : e.pairs) fans.push_back(fans_of(pair[0], e.u));
       std::sort(fans.begin(), fans.end());
@@ -90,6 +91,7 @@ class Separation {
         return is_divided[pair[0] / 3] || is_divided[pair[1] / 3];
       });
       if (!is_possible) continue;
+      is_any = true;
       const uint32_t middle = uint32_t(point_.size());
       point_.push_back(.5 * (point_[e.u] + point_[e.v]));
       for (const auto& pair : e.pairs)
@@ -98,6 +100,7 @@ class Separation {
           divide(h, middle);
         }
     }
+    return is_any;
   }
 
   void divide(uint32_t half_edge, uint32_t middle) {
