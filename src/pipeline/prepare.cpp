@@ -26,6 +26,8 @@
 namespace isoshell {
 namespace {
 
+constexpr double kNeedleVoxelsPerVertex = 1.1;  ///< along it: grown by two to each side its cells are 4.5 voxels wide
+
 /// None when the run finds it.
 std::optional<int32_t> requested_closing(const Plan& plan, const LatticeFrame& frame) {
   const RemeshOptions& options = plan.options;
@@ -133,7 +135,7 @@ class GridSearch {
 
   /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
   PreparedSurface best_grid() {
-    const int32_t usual = plan_.first_resolution();
+    const int32_t usual = resolution_for_needle(plan_.first_resolution());
     const int32_t first = plan_.chooses_grid() && wants_lengths(plan_.options)
                               ? resolution_for_lengths(soup_, plan_, usual, report_, context_)
                               : usual;
@@ -170,6 +172,20 @@ class GridSearch {
  private:
   bool allows(int32_t resolution, bool is_refining) {
     return memory_allows(estimate_plan(plan_, soup_, resolution), is_refining, report_, context_);
+  }
+
+  /// Of a needle far thinner than a voxel of the finest grid the grid on which its walls, grown, have room for the
+  /// vertices, and no finer one; of all else the resolution that is given. The voxels that hold a needle are as many as
+  /// it is long, those that hold other surfaces as many as their area.
+  int32_t resolution_for_needle(int32_t resolution) {
+    if (resolution < kMaxResolution || !plan_.chooses_grid() || !allows(resolution, false)) return resolution;
+    const LatticeSurface surface = snapped(resolution);
+    const auto sites =
+        double(timed(report_, "voxelize", context_, [&] { return voxelize(surface, context_).voxels.voxel_count(); }));
+    const double voxel = surface.frame.voxel_size, area_vox = plan_.input.area_world / (voxel * voxel);
+    if (area_vox > sites / 2) return resolution;
+    const double wanted = kNeedleVoxelsPerVertex * double(plan_.target.vertices) / sites * resolution;
+    return int32_t(std::clamp<double>(wanted, kMinDefaultResolution, resolution));
   }
 
   LatticeSurface snapped(int32_t resolution) {

@@ -205,6 +205,20 @@ TEST_CASE("prepare: where closing fills open surfaces to less than half an edge,
   CHECK(volume_in_balls(prepare_with(slotted_ball(.05), options)) > .9);
 }
 
+TEST_CASE("prepare: a needle far thinner than a voxel is grown until edges turn around it, and named", "[prepare]") {
+  RemeshOptions options;
+  options.vertices = 300;
+  TriangleSoup needle = shapes::box({0, 0, 0}, {1e6, 1, 1});
+  TestContext context;
+  const RemeshResult closed = remesh(needle, options, context);
+  CHECK(closed.mesh.vertices.size() == 300);
+  CHECK(closed.report.optimize.self_intersections == 0);
+  CHECK(std::any_of(closed.report.warnings.begin(), closed.report.warnings.end(),
+                    [](const std::string& w) { return w.find("the surface is a needle") == 0; }));
+  needle.triangles.resize(needle.triangles.size() - 2);  // without one of its long sides
+  CHECK(remesh(needle, options, context).mesh.vertices.size() == 300);
+}
+
 TEST_CASE("prepare: more handles than vertices can show are closed, and it is said", "[prepare]") {
   RemeshOptions options;
   options.vertices = 400;

@@ -14,8 +14,7 @@ namespace {
 // Default grid: a cell is about so many voxels wide, more when cells are few and large. What a grid loses of tips is as
 // wide as its voxels.
 constexpr double kVoxelsPerSpacing = 4.5, kMostVoxelsPerSpacing = 5.5;
-constexpr double kFewestVoxels = 2e5;  // of the surface, unless cells are that wide
-constexpr int32_t kMinDefaultResolution = 64;
+constexpr double kFewestVoxels = 2e5;                  // of the surface, unless cells are that wide
 constexpr double kAreaPerEdgeSq = 0.8660254037844386;  // of one vertex of the equilateral triangulation, sqrt(3) / 2
 
 constexpr int64_t kUsualVertices = 10000;

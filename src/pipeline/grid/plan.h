@@ -5,6 +5,8 @@
 
 namespace isoshell {
 
+constexpr int32_t kMinDefaultResolution = 64;  ///< of a grid that nobody asked for
+
 /// How many vertices a result has, and how long edges are where nothing else says it.
 struct Target {
   int64_t vertices = 0;

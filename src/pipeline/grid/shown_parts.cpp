@@ -35,6 +35,11 @@ void warn_of_grown_solid(const PreparedSurface& p, const InputTopology& input, R
         thickness + " apart; --close-gaps may close it");
     return;
   }
+  if (shows_most_handles(p.target_of_input.vertices, input)) {
+    report.warnings.push_back("the surface is a needle, far thinner than its edges are long: its walls were grown to " +
+                              thickness + "; with more --vertices they stay thinner");
+    return;
+  }
   report.warnings.push_back(std::to_string(input.components) + " components and " + std::to_string(input.genus) +
                             " handles are more than so few vertices can show: hollows and gaps below " +
                             length_text(2 * p.closing_vox * voxel) + " were closed and walls grown to at least " +
@@ -57,7 +62,7 @@ int64_t smallest_component_q16(const PreparedSurface& p) {
   if (input.closed && input.oriented && shows_all_parts(vertices, input)) return 0;
   const double cell_world = input.area_world / double(std::max<int64_t>(64, vertices));
   const double voxel = p.surface.frame.voxel_size, cell_vox = cell_world / (voxel * voxel);
-  return int64_t(4 * cell_vox * 65536);
+  return cell_vox < kLeastCellVox ? 0 : int64_t(4 * cell_vox * 65536);
 }
 
 void warn_of_topology(const PreparedSurface& p, const InputTopology& input, RemeshReport& report) {

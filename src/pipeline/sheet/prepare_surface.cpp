@@ -51,7 +51,9 @@ class Preparation {
     } else {
       close_leaks(p);
     }
-    if (is_open && is_crust(p))
+    if (has_no_room(p))
+      thicken_needle(p);
+    else if (is_open && is_crust(p))
       keep_sides_apart(p);
     else if (is_open || p.surface.first_cap != kNone)  // a flap's cap may lie on it
       thicken_flaps(p);
@@ -100,6 +102,22 @@ class Preparation {
   double thickness_vox(const Sheet& sheet) const {
     const double voxel = sheet.frame.voxel_size, area_vox = sheet_area_world(sheet) / (voxel * voxel);
     return double(six_volume_vox(sheet, context_)) / 3 / area_vox;
+  }
+
+  /// Whether the sheet is far thinner than a voxel all over, as that of a needle: it has no area for so many cells.
+  bool has_no_room(const PreparedSurface& p) const {
+    const double voxel = p.sheet.frame.voxel_size;
+    return sheet_area_world(p.sheet) < kLeastCellVox * voxel * voxel * double(p.target_of_input.vertices);
+  }
+
+  /// Until edges turn around it. The sheet's area, and so its edges, grow as it does.
+  void thicken_needle(PreparedSurface& p) {
+    int32_t grown_vox = 0;
+    for (int32_t wider_vox = 1; wider_vox > grown_vox;) {
+      grown_vox = wider_vox;
+      grow(p, grown_vox);
+      wider_vox = growth_for_edge(edge_length_on_sheet_world(p) / p.surface.frame.voxel_size);
+    }
   }
 
   /// Whether the outside reaches both sides of the surface. Closing fills parts of a crust, but makes it no solid: that

@@ -176,27 +176,34 @@ struct LabelBlock {
     }
   }
 
-  /// The exact path without lists, where too many seeds can win somewhere in the block: each vertex looks for its own,
-  /// farther until the best one is nearer than it looked. No label costs more than the limit.
+  /// The exact path without lists, where too many seeds can win somewhere in the block: each vertex looks around itself
+  /// until no seed farther away can cost less. No label costs more than the limit.
   ISOSHELL_HD void label_directly(int64_t limit, int64_t begin, int64_t end) const {
     const uint32_t patch = patches.at(begin);
     for (int64_t v = begin; v < end; ++v) {
-      Bounds at = empty_bounds();
-      include(at, position[v], normal[v]);
-      for (int64_t reach = spacing.h_at(uint32_t(v)) + 1;; reach *= 2) {
-        const int64_t within = reach * reach < limit ? reach * reach : limit;
-        int64_t best = INT64_MAX;
-        uint32_t id = kNone;
-        for_each_within(patch, at, within, [&](const LabelSeed& s) {
-          const int64_t c = cost(position[v], normal[v], s, spacing.penalty_q16);
-          if (c < best || (c == best && s.id < id)) best = c, id = s.id;
-        });
-        if (best > within && within < limit) continue;
-        out[v] = id;
-        break;
-      }
+      CheapestSeed cheapest{*this, position[v], normal[v], patch, limit};
+      visit_around(grid, BoxQ8{position[v], position[v]}, cheapest);
+      out[v] = cheapest.id;
     }
   }
+
+  /// Keeps the smallest (cost, id) of the patch's seeds that it is shown.
+  struct CheapestSeed {
+    const LabelBlock& block;
+    PointQ8 position;
+    Normal8 normal;
+    uint32_t patch;
+    int64_t limit;
+    int64_t best = INT64_MAX;
+    uint32_t id = kNone;
+
+    ISOSHELL_HD int64_t bound_q16() const { return best < limit ? best : limit; }
+    ISOSHELL_HD void operator()(const GridPoint& p) {
+      if (!block.patches.has(patch, p.id)) return;
+      const int64_t c = cost(position, normal, {p.position, p.id, block.seed_normal[p.id]}, block.spacing.penalty_q16);
+      if (c < best || (c == best && p.id < id)) best = c, id = p.id;
+    }
+  };
 
   /// Calls visit(LabelSeed) for every seed of the patch whose squared distance to the box is at most the limit, and for
   /// some more of the patch.
