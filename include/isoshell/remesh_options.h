@@ -28,10 +28,7 @@ struct Features {
   };
   Creases creases = Creases::automatic;
   double degrees = 0;                           ///< only of a threshold
-  std::string line_file = {};                   ///< where a run reads `lines` from; remesh() itself reads no file
   std::shared_ptr<const Polylines> lines = {};  ///< become edges of the result, whatever the creases; null: none
-
-  bool has_lines() const { return lines || !line_file.empty(); }
 };
 
 /// What becomes of the borders of a surface that is not closed.
@@ -92,11 +89,9 @@ struct ShapeOptions {
   /// What the regions of a mesh are, as find_part_regions() takes it: its walls become one mesh; empty: it is one
   /// solid.
   std::string regions = {};
-  /// Names of the attributes that a run keeps; without a value all. Where texture coordinates, materials or groups that
-  /// are kept jump, the result has edges. remesh() itself makes positions only.
-  std::optional<std::vector<std::string>> attributes;
-  UvSeams uv_seams = UvSeams::keep;  ///< names of faces, as materials and groups, end at edges either way
-  bool color_features = false;       ///< a run colours patches, curves and corners, and writes the curves' edges to PLY
+  /// Where texture coordinates, materials or groups of the input jump, the result has edges; names of faces, as
+  /// materials and groups, end at edges either way. The values themselves go over by transfer_attributes().
+  UvSeams uv_seams = UvSeams::keep;
 };
 
 /// What has no value is chosen by the run. The numbers that stood for that before, 0 or -1 by option, mean it still.

@@ -96,6 +96,15 @@ def test_lists_of_names_are_the_texts_with_commas(box):
     assert isoshell.remesh(box, require=[], attributes=[], **small).digest == error.result.digest
 
 
+def test_features_may_name_a_file_of_lines(tmp_path, box):
+    (tmp_path / "line.obj").write_text("v 0 0 1\nv 1 1 1\nl 1 2\n")
+    options = {"vertices": 300, "features": f"30,{tmp_path / 'line.obj'}"}
+    result = isoshell.remesh(box, stats=True, **options)
+    assert result.report["features"]["lines"] == 1 and result.report["options"]["features"] == options["features"]
+    [of_many] = isoshell.remesh_many([box], **options)
+    assert of_many.digest == result.digest
+
+
 def test_error_codes_are_the_exit_statuses():
     assert {code.name: int(code) for code in ErrorCode} == {
         "INTERNAL": 1, "USAGE": 2, "UNREADABLE_INPUT": 3, "UNWRITABLE_OUTPUT": 4, "NOTHING_TO_MESH": 5,

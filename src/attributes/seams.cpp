@@ -76,12 +76,10 @@ class SeamFinder {
 
 }  // namespace
 
-Seams find_seams(const TriangleSoup& soup, const ShapeOptions& options, double edge_length_world) {
-  const std::optional<std::vector<std::string>>& names = options.attributes;
+Seams find_seams(const TriangleSoup& soup, UvSeams uv_seams, double edge_length_world) {
   std::vector<const Attribute*> jumping;
   for (const Attribute& a : soup.attributes)
-    if (makes_seams(a, options.uv_seams) && (!names || std::find(names->begin(), names->end(), a.name) != names->end()))
-      jumping.push_back(&a);
+    if (makes_seams(a, uv_seams)) jumping.push_back(&a);
   if (jumping.empty()) return {};
   SeamFinder finder(soup, edge_length_world);
   for (const Attribute* a : jumping) finder.add(*a);

@@ -18,13 +18,12 @@ RemeshOptions checked(RemeshOptions values) {
 }
 
 void check_method(const RequestedOptions& options) {
-  const RemeshOptions& o = options.values;
+  const RunOptions& o = options.values;
   if (o.method != Method::shell) return;
   const auto refuse = [](const char* what) { throw Error(ErrorCode::usage, "options", what); };
   if (o.features.creases == Features::Creases::threshold)
     refuse("--features DEG needs --method sheet: the paper's loop on the shell knows no curves");
-  if (o.features.has_lines())
-    refuse("lines in --features need --method sheet: the paper's loop on the shell knows no curves");
+  if (o.has_lines()) refuse("lines in --features need --method sheet: the paper's loop on the shell knows no curves");
   if (o.boundary == Boundary::keep)
     refuse("--boundary keep needs --method sheet: the paper's loop on the shell knows no borders");
   if (o.previous)

@@ -1,7 +1,9 @@
 #include "isoshell/options/option_table.h"
 
+#include <algorithm>
 #include <limits>
 
+#include "isoshell/error.h"
 #include "isoshell/options/option_text.h"
 
 namespace isoshell {
@@ -9,7 +11,7 @@ namespace {
 
 constexpr double kMostVertices = std::numeric_limits<int32_t>::max();
 
-/// Names of the values of a member of RemeshOptions, which one function reads and another writes.
+/// Names of the values of a member of RunOptions, which one function reads and another writes.
 template <auto Member, auto Parse, auto Name>
 TextOption named(TextOption::Number number = TextOption::Number::refused, void (*check)(RemeshOptions&) = nullptr) {
   return {[](const std::string& shown, const std::string& text, RequestedOptions& to) {
@@ -23,8 +25,19 @@ void check_features(RemeshOptions& o) {
     check_range("features.degrees", o.features.degrees, kCreaseDegrees);
 }
 
-TextOption features_option() {
-  return named<&RemeshOptions::features, parse_features, features_text>(TextOption::Number::read, check_features);
+/// Behind a comma stands the file of lines.
+void parse_features_and_lines(const std::string& shown, const std::string& text, RequestedOptions& to) {
+  const size_t comma = std::min(text.find(','), text.size());
+  const std::string file = text.substr(std::min(comma + 1, text.size()));
+  if (comma < text.size() && file.empty())
+    throw Error(ErrorCode::usage, "options", shown + " is '" + text + "'; behind the comma stands a file of lines");
+  to.values.features = parse_features(shown, text.substr(0, comma));
+  to.values.line_file = file;
+}
+
+std::string features_and_lines_text(const RequestedOptions& from) {
+  const std::string &file = from.values.line_file, creases = features_text(from.values.features);
+  return file.empty() ? creases : creases + "," + file;
 }
 
 TextOption gap_option() {
@@ -184,7 +197,9 @@ std::vector<OptionRow> shape_rows() {
       {group, "features", "auto|off|DEG[,FILE]",
        "sharp edges of the input that stay: auto: those of crisp parts; DEG: all whose faces turn by so many degrees "
        "or more; off: none; and the lines of FILE, OBJ (l) or PLY (edges), as auto,curves.obj",
-       "auto", "features", features_option(), OnResume::of_seeds, kCreaseDegrees},
+       "auto", "features",
+       TextOption{parse_features_and_lines, features_and_lines_text, TextOption::Number::read, check_features},
+       OnResume::of_seeds, kCreaseDegrees},
       {group, "boundary", "close|keep",
        "borders of a surface that is not closed: close: the result is closed; keep: those wider than the gaps of "
        "--close-gaps are borders of the result",
@@ -197,14 +212,14 @@ std::vector<OptionRow> shape_rows() {
       {group, "attributes", "all|none|LIST",
        "what a mesh has beside its positions and the result keeps: names separated by commas, such as color, uv, "
        "normal, material, group",
-       "all", "attributes", named<&RemeshOptions::attributes, parse_attributes, attributes_text>(), OnResume::of_run},
+       "all", "attributes", named<&RunOptions::attributes, parse_attributes, attributes_text>(), OnResume::of_run},
       {group, "uv-seams", "keep|ignore",
        "places where texture coordinates jump: keep: they are edges of the result; ignore: triangles lie across them, "
        "each with the texture coordinates of one chart",
        "keep", "uv_seams", named<&RemeshOptions::uv_seams, parse_uv_seams, uv_seams_name>(), OnResume::of_run},
       {group, "color-features", "",
        "colour faces by patch and vertices by curve and corner, and write the edges of curves; in PLY", "",
-       "color_features", &RemeshOptions::color_features, OnResume::of_file},
+       "color_features", &RunOptions::color_features, OnResume::of_file},
       {group, "uniform-area", "", "prefer triangles of equal area to triangles of the best shape", "", "uniform_area",
        &RemeshOptions::uniform_area, OnResume::of_file},
   };

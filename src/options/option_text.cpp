@@ -109,28 +109,20 @@ UvSeams parse_uv_seams(const std::string& option, const std::string& text) {
 const char* uv_seams_name(UvSeams seams) { return seams == UvSeams::ignore ? "ignore" : "keep"; }
 
 Features parse_features(const std::string& option, const std::string& text) {
-  const size_t comma = text.find(',');
-  const std::string creases = text.substr(0, comma);
   Features features;
-  if (comma != std::string::npos) {
-    features.line_file = text.substr(comma + 1);
-    if (features.line_file.empty()) refuse(option + " is '" + text + "'; behind the comma stands a file of lines");
-  }
-  if (creases == "off") {
+  if (text == "off") {
     features.creases = Features::Creases::off;
-  } else if (creases != "auto") {
+  } else if (text != "auto") {
     features.creases = Features::Creases::threshold;
-    features.degrees = parse_number(option + " is neither off nor auto: the angle of creases", creases);
+    features.degrees = parse_number(option + " is neither off nor auto: the angle of creases", text);
     check_range(option, features.degrees, kCreaseDegrees);
   }
   return features;
 }
 
 std::string features_text(const Features& features) {
-  const std::string creases = features.creases == Features::Creases::threshold ? number_text(features.degrees)
-                              : features.creases == Features::Creases::off     ? "off"
-                                                                               : "auto";
-  return features.line_file.empty() ? creases : creases + "," + features.line_file;
+  if (features.creases == Features::Creases::threshold) return number_text(features.degrees);
+  return features.creases == Features::Creases::off ? "off" : "auto";
 }
 
 std::vector<RegionEdgeLength> parse_region_edge_lengths(const std::string& option, const std::string& text) {

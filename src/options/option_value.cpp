@@ -51,8 +51,8 @@ T parsed(const std::string& shown_name, const std::string& text) {
 }  // namespace
 
 bool OptionRow::is_real() const {
-  return std::holds_alternative<double RemeshOptions::*>(member) ||
-         std::holds_alternative<std::optional<double> RemeshOptions::*>(member);
+  return std::holds_alternative<double RunOptions::*>(member) ||
+         std::holds_alternative<std::optional<double> RunOptions::*>(member);
 }
 
 bool OptionRow::repeats() const {
@@ -63,7 +63,7 @@ bool OptionRow::repeats() const {
 bool OptionRow::may_be_open() const {
   return visit_member(
       *this, [](const TextOption&) { return false; },
-      [](auto value) { return Plain<std::decay_t<decltype(RemeshOptions().*value)>>::is_optional; });
+      [](auto value) { return Plain<std::decay_t<decltype(RunOptions().*value)>>::is_optional; });
 }
 
 OptionValue value_of(const OptionRow& row, const RequestedOptions& options) {

@@ -99,14 +99,14 @@ bool RequestedOptions::was_given(const std::string& name) const {
   return std::find(given.begin(), given.end(), name) != given.end();
 }
 
-RequestedOptions requested_options(RemeshOptions values, std::string sizing) {
+RequestedOptions requested_options(RunOptions values, std::string sizing) {
   RequestedOptions requested{std::move(values), std::move(sizing), {}};
   for (const OptionRow& row : option_rows())
     if (value_of(row, requested) != value_of(row, {})) requested.given.push_back(row.name);
   return requested;
 }
 
-std::string options_json(const RemeshOptions& options) {
+std::string options_json(const RunOptions& options) {
   const RequestedOptions requested{options, "", {}};
   Json object = Json::object();
   for (const OptionRow& row : option_rows()) object[row.name] = json_of(row, requested);

@@ -115,12 +115,12 @@ OutputRequest named_output(const std::string& path, const std::string& format, S
   return output;
 }
 
-Features possible_features(const RemeshOptions& options, const RunRequest& r) {
+Features possible_features(const RunOptions& options, const RunRequest& r) {
   if (r.save_voronoi.empty() && r.stop_after != StopAfter::voronoi) return options.features;
   if (options.boundary == Boundary::keep)
     refuse_use(
         "a Voronoi stage file does not hold the seeds of borders; give --boundary close, or keep a shell instead");
-  if (options.features.creases != Features::Creases::threshold && !options.features.has_lines())
+  if (options.features.creases != Features::Creases::threshold && !options.has_lines())
     return {Features::Creases::off, 0};
   refuse_use(
       "a Voronoi stage file does not hold the seeds of creases and lines; give --features off, or keep a shell "
@@ -160,7 +160,7 @@ std::string file_of_sizing(const std::string& sizing) {
 std::vector<NamedFile> inputs_of(const RunRequest& r) {
   return {{kInput, r.input.path},
           {"--sizing", file_of_sizing(r.options.sizing)},
-          {"--features", r.options.values.features.line_file}};
+          {"--features", r.options.values.line_file}};
 }
 
 void check_request(const RunRequest& r) {

@@ -54,6 +54,6 @@ void write_region(const RegionFile& file, const TriangleMesh& mesh, bool overwri
 
 /// What a run can keep of the features that are asked for, or that the stage file has that it resumes: a Voronoi stage
 /// file holds none. Throws: usage where a threshold, or that borders are kept, is asked for and such a file.
-Features possible_features(const RemeshOptions& options, const RunRequest& request);
+Features possible_features(const RunOptions& options, const RunRequest& request);
 
 }  // namespace isoshell

@@ -66,7 +66,7 @@ Json union_json(const UnionReport& u) {
 }
 
 /// Schema 1 says under "grid" what came of the options that choose it.
-Json options_of_schema(const RemeshOptions& options) {
+Json options_of_schema(const RunOptions& options) {
   Json j = Json::parse(options_json(options));
   for (const char* name : {"resolution", "voxel-size", "close-gaps"}) j.erase(name);
   return j;

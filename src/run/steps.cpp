@@ -249,15 +249,15 @@ class RunSteps::Run {
   }
 
   void read_lines() {
-    Features& features = options_.values.features;
-    if (features.line_file.empty()) return;
-    features.lines = timed("lines", [&] { return read_polylines(features.line_file, context_->memory_limit_bytes); });
-    tell(MessageKind::note, "lines to keep: " + features.line_file);
+    const std::string& file = options_.values.line_file;
+    if (file.empty()) return;
+    options_.values.features.lines = timed("lines", [&] { return read_polylines(file, context_->memory_limit_bytes); });
+    tell(MessageKind::note, "lines to keep: " + file);
   }
 
   Prepared prepared_from(Input& input) {
     RemeshOptions options = options_.values;
-    options.features = possible_features(options, request_);
+    options.features = possible_features(options_.values, request_);
     options.want_samples = measures_all(request_);  // by find_risks
     options.regions.clear();                        // surface() has them
     if (!input.stage) return isoshell::prepare(surface(), options, *context_);

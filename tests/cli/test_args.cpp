@@ -22,7 +22,7 @@ Arguments arguments(std::vector<const char*> options) {
   return *parse(std::move(options)).run;
 }
 
-RemeshOptions values(std::vector<const char*> options) { return arguments(std::move(options)).run.options.values; }
+RunOptions values(std::vector<const char*> options) { return arguments(std::move(options)).run.options.values; }
 
 /// The message of the usage error that these words give; empty when they are accepted.
 std::string refusal(std::vector<const char*> words) {
@@ -55,6 +55,9 @@ TEST_CASE("args: options reach the library with their units", "[cli][args]") {
   CHECK(values({"--fit", "surface"}).fit == Fit::surface);
   CHECK(values({}).fit == Fit::balanced);
   CHECK(values({"--uniform-area"}).uniform_area);
+  CHECK(values({"--features", "30,curves.obj"}).features.degrees == 30);
+  CHECK(values({"--features", "30,curves.obj"}).line_file == "curves.obj");
+  CHECK(values({"--color-features"}).color_features);
   CHECK_FALSE(values({"--attributes", "all"}).attributes);
   CHECK(values({"--attributes", "none"}).attributes == std::vector<std::string>{});
   CHECK(values({"--attributes", "color,heat"}).attributes == std::vector<std::string>{"color", "heat"});

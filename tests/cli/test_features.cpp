@@ -135,8 +135,10 @@ TEST_CASE("features: resumed from a shell, lines are read again", "[cli][vdb][fe
   Folder folder;
   write_box(folder);
   folder.write("cross.obj", kCross);
-  REQUIRE(folder.run("box.off whole.ply --features auto,cross.obj --save-shell s.vdb" + kQuick).status == 0);
-  REQUIRE(folder.run("s.vdb resumed.ply --device cpu").status == 0);
-  CHECK(folder.content("whole.ply") == folder.content("resumed.ply"));
+  for (const char* features : {"auto,cross.obj", "30,cross.obj --color-features"}) {
+    REQUIRE(folder.run("box.off whole.ply --save-shell s.vdb --features " + (features + kQuick)).status == 0);
+    REQUIRE(folder.run("s.vdb resumed.ply --device cpu --force").status == 0);
+    CHECK(folder.content("whole.ply") == folder.content("resumed.ply"));
+  }
 }
 #endif

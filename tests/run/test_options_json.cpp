@@ -51,7 +51,7 @@ TEST_CASE("options json: what is not given is the number that always stood for i
 }
 
 TEST_CASE("options json: every option survives the way there and back", "[options]") {
-  RemeshOptions o;
+  RunOptions o;
   o.vertices.reset();
   o.edge_length_world = 0.1;
   o.resolution = 77;
@@ -68,14 +68,15 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.gradation = 1.5;
   o.fit = Fit::surface;
   o.uniform_area = true;
-  o.features = {Features::Creases::threshold, 33.25, "marks.obj", nullptr};
+  o.features = {Features::Creases::threshold, 33.25};
+  o.line_file = "marks.obj";
   o.color_features = true;
   o.boundary = Boundary::keep;
   o.attributes = {"color", "quality"};
   o.uv_seams = UvSeams::ignore;
   o.outer_only = true;
   const RequestedOptions back = parse_options_json(options_json(o));
-  const RemeshOptions& b = back.values;
+  const RunOptions& b = back.values;
   CHECK_FALSE(b.vertices);
   CHECK(b.edge_length_world == o.edge_length_world);
   CHECK(b.resolution == o.resolution);
@@ -96,7 +97,7 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   CHECK(b.uniform_area);
   CHECK(b.features.creases == Features::Creases::threshold);
   CHECK(b.features.degrees == 33.25);
-  CHECK(b.features.line_file == "marks.obj");
+  CHECK(b.line_file == "marks.obj");
   CHECK(b.color_features);
   CHECK(b.boundary == Boundary::keep);
   CHECK(b.attributes == o.attributes);
@@ -209,6 +210,15 @@ TEST_CASE("options: the numbers that stood for what is not given are still none"
   CHECK_FALSE(back.values.vertices);
   CHECK_FALSE(back.values.closing_vox);
   CHECK_FALSE(back.values.tolerance);
+}
+
+TEST_CASE("options json: a file of lines stands behind a comma, and the edges that are kept before it", "[options]") {
+  const RunOptions lines = parse_options_json(R"({"features": "off,a,b.obj"})").values;
+  CHECK(lines.features.creases == Features::Creases::off);
+  CHECK(lines.line_file == "a,b.obj");
+  CHECK(parse_options_json(R"({"features": 30})").values.line_file.empty());
+  CHECK(refusal(R"({"features": "30,"})") == "features is '30,'; behind the comma stands a file of lines");
+  CHECK(contains(refusal(R"({"features": ",a.obj"})"), "neither off nor auto"));
 }
 
 TEST_CASE("options json: attributes are all, none, or names between commas", "[options]") {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <set>
+#include <utility>
 
 #include "core/attribute_values.h"
 #include "features/curves/find_curves.h"
@@ -298,6 +299,23 @@ TEST_CASE("seams: without the attributes the surface is as if there were none", 
   CHECK(digest_text(digest(run_of(soup, 800).mesh)) != bare);
   CHECK(digest_text(digest(run_of(soup, 800, "auto", 0, "uv").mesh)) ==
         digest_text(digest(run_of(soup, 800, "auto", 0, "group").mesh)));
+}
+
+TEST_CASE("seams: remesh() makes those of all attributes of its input, a run those of what it keeps", "[seams]") {
+  TriangleSoup soup = bar(4);
+  Attribute quarter{kGroupName, NumberType::i32, 1, {}, AttributeDomain::face, {}, {"end", "rest"}};
+  for (size_t t = 0; t < soup.triangles.size(); ++t) quarter.values.push_back(middle_of(soup, t).x > .5);
+  soup.attributes = {of_corners(soup, kUvName, 2, uv_of_halves), quarter};
+  RemeshOptions options;
+  options.vertices = 800;
+  options.features.creases = Features::Creases::off;
+  Context context;
+  context.backend = Backend::cpu;
+  CHECK(remesh(soup, options, context).report.features.patches == 3);
+  for (const auto& [names, patches] : {std::pair("all", 3), {"uv", 2}, {"group", 2}, {"uv,group", 3}, {"none", 0}})
+    CHECK(run_of(soup, 800, "off", 0, names).record.report.features.patches == patches);
+  options.uv_seams = UvSeams::ignore;
+  CHECK(remesh(soup, options, context).report.features.patches == 2);
 }
 
 TEST_CASE("seams: any number of threads gives the same values", "[seams]") {

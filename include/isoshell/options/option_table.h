@@ -31,11 +31,11 @@ struct TextOption {
   bool repeats = false;                            ///< its text has a line for each time that it is given
 };
 
-/// What of RemeshOptions holds the value; flags are bool.
+/// What of RunOptions holds the value; flags are bool.
 using OptionMember =
-    std::variant<bool RemeshOptions::*, int32_t RemeshOptions::*, uint64_t RemeshOptions::*, double RemeshOptions::*,
-                 std::optional<int32_t> RemeshOptions::*, std::optional<int64_t> RemeshOptions::*,
-                 std::optional<double> RemeshOptions::*, TextOption>;
+    std::variant<bool RunOptions::*, int32_t RunOptions::*, uint64_t RunOptions::*, double RunOptions::*,
+                 std::optional<int32_t> RunOptions::*, std::optional<int64_t> RunOptions::*,
+                 std::optional<double> RunOptions::*, TextOption>;
 
 /// Where a run from a stage file takes an option from.
 enum class OnResume {
@@ -50,7 +50,7 @@ struct OptionRow {
   const char* value_name;    ///< what stands for its value, as K; empty: a flag
   const char* text;
   const char* fallback;     ///< what holds without it, for people
-  const char* member_name;  ///< of RemeshOptions
+  const char* member_name;  ///< of RunOptions
   OptionMember member;
   OnResume on_resume;
   OptionRange range = {};
@@ -60,7 +60,7 @@ struct OptionRow {
   bool is_flag() const { return *value_name == '\0'; }
   bool repeats() const;  ///< it may be given more than once
   bool is_text() const { return std::holds_alternative<TextOption>(member); }
-  bool is_seed() const { return std::holds_alternative<uint64_t RemeshOptions::*>(member); }  ///< of all 64 bits
+  bool is_seed() const { return std::holds_alternative<uint64_t RunOptions::*>(member); }  ///< of all 64 bits
   bool is_real() const;      ///< any number, not only whole ones
   bool may_be_open() const;  ///< it may have no value
 };

@@ -60,8 +60,7 @@ const char* fit_name(Fit fit);
 Boundary parse_boundary(const std::string& option, const std::string& text);
 const char* boundary_name(Boundary boundary);
 
-/// "off", "auto", or the angle in degrees from which on edges are creases; behind a comma the file of lines that are
-/// kept, too, which a run reads. Throws: usage.
+/// "off", "auto", or the angle in degrees from which on edges are creases. Throws: usage.
 Features parse_features(const std::string& option, const std::string& text);
 std::string features_text(const Features& features);
 

@@ -10,7 +10,7 @@ namespace isoshell {
 /// One object on one line, with every option of a run under its name of the command and the number that stands for what
 /// has no value: 0, or -1 for the tolerance. What of the sizing's name is not UTF-8 becomes U+FFFD. "close-gaps" is
 /// "auto", voxels as "4vox", or a width in world units.
-std::string options_json(const RemeshOptions& options);
+std::string options_json(const RunOptions& options);
 
 enum class UnknownOptions {
   refuse,

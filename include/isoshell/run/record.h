@@ -13,6 +13,7 @@
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/memory_estimate.h"
 #include "isoshell/mesh_topology.h"
+#include "isoshell/options/requested_options.h"
 #include "isoshell/quality.h"
 #include "isoshell/region_census.h"
 #include "isoshell/remesh.h"
@@ -52,7 +53,7 @@ struct AttributeReport {
 
 /// The result is measured as its file has it, in which positions may be rounded.
 struct RunRecord {
-  RemeshOptions options;  ///< as they were asked for
+  RunOptions options;  ///< as they were asked for
   InputFacts input;
   OutputRequest output;
   std::vector<WrittenFile> files;  ///< of meshes: that of the output, then those of regions

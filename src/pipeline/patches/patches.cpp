@@ -101,7 +101,7 @@ Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double 
                Context& context) {
   if (!source || source->attributes.empty()) return {};
   return timed(report, "features", context, [&] {
-    Seams seams = find_seams(*source, options, edge_length_world);
+    Seams seams = find_seams(*source, options.uv_seams, edge_length_world);
     for (const DroppedAttribute& d : seams.dropped)
       report.warnings.push_back("triangles may lie across the seams of " + d.name + ": " + d.reason);
     return seams;
