@@ -50,8 +50,9 @@ struct Known {
 /// Of some vertices: those of a block, or all.
 class Coarsening {
  public:
-  Coarsening(WallMesh& mesh, Known& known, const WallBlocks* blocks, size_t block)
-      : mesh_(mesh), known_(known), blocks_(blocks), block_(block) {}
+  Coarsening(WallMesh& mesh, Known& known, WallMesh::Shapes shapes, const WallBlocks* blocks = nullptr,
+             size_t block = 0)
+      : mesh_(mesh), known_(known), shapes_(shapes), blocks_(blocks), block_(block) {}
 
   void add(uint32_t v) {
     if (!is_here(v)) return;
@@ -118,8 +119,8 @@ class Coarsening {
     list_ways(v);
     if (ways_.empty()) return;
     if (ways_[0].first > expected) return push(v, ways_[0].first);
-    const auto way =
-        std::find_if(ways_.begin(), ways_.end(), [&](const auto& w) { return mesh_.collapse(v, w.second, scratch_); });
+    const auto way = std::find_if(ways_.begin(), ways_.end(),
+                                  [&](const auto& w) { return mesh_.collapse(v, w.second, scratch_, shapes_); });
     if (way == ways_.end()) return;  // until something around it changes
     const uint32_t into = way->second;
     known_.quadric[into].add(known_.quadric[v]);
@@ -131,6 +132,7 @@ class Coarsening {
 
   WallMesh& mesh_;
   Known& known_;
+  const WallMesh::Shapes shapes_;
   const WallBlocks* blocks_;  ///< null: everything is here
   size_t block_;
   std::priority_queue<Entry> queue_;
@@ -169,7 +171,7 @@ void coarsen_in_blocks(WallMesh& mesh, int64_t vertices, Known& known, const Con
   for (const bool is_shifted : {false, true}) {
     const WallBlocks blocks(mesh, side_q8, is_shifted);
     for_each_index(size_t(0), blocks.size(), [&](size_t b) {
-      Coarsening here(mesh, known, &blocks, b);
+      Coarsening here(mesh, known, WallMesh::Shapes::good, &blocks, b);
       for (const uint32_t v : blocks.vertices_of(b)) here.add(v);
       here.run(0, most_cost, context);
       for (const uint32_t v : blocks.vertices_of(b)) known.least[v] = kNever;
@@ -183,9 +185,13 @@ void coarsen(WallMesh& mesh, int64_t vertices, const Context& context) {
   if (mesh.vertex_count() <= vertices) return;
   Known known = known_of(mesh);
   if (mesh.vertex_count() > kManyVertices * vertices) coarsen_in_blocks(mesh, vertices, known, context);
-  Coarsening all(mesh, known, nullptr, 0);
-  for (uint32_t v = 0; v < mesh.vertices().size(); ++v) all.add(v);
-  all.run(vertices, kNever, context);
+  for (const auto shapes : {WallMesh::Shapes::good, WallMesh::Shapes::any}) {  // the count goes before shapes
+    std::fill(known.least.begin(), known.least.end(), kNever);
+    Coarsening all(mesh, known, shapes);
+    for (uint32_t v = 0; v < mesh.vertices().size(); ++v) all.add(v);
+    all.run(vertices, kNever, context);
+    if (mesh.vertex_count() <= vertices) return;
+  }
 }
 
 }  // namespace isoshell
