@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "features/cutting/change_paths.h"
 #include "features/cutting/cut_fine_mesh.h"
 #include "features/cutting/cut_piece.h"
 #include "isoshell/mesh_topology.h"
@@ -94,38 +93,4 @@ TEST_CASE("pieces: patches in a plane have triangles there, and others are left 
     CHECK(after.is_closed_manifold() == before.is_closed_manifold());
     CHECK(after.genus == before.genus);
   }
-}
-
-TEST_CASE("pieces: a crease that is dropped at a place joins the patches beside it", "[cut_surface][stage]") {
-  Context context;
-  const Made made = made_of(feature_cube(), context);
-  const CutCurve& curve = made.cut.curves[0];
-  const uint32_t middle = curve.place[curve.place.size() / 2];
-  const PointQ8 at = made.cut.surface.position[made.cut.copies[size_t(made.cut.copies_first[middle])]];
-  const std::optional<Paths> fewer = drop_creases(*made.cut.fine, {at});
-  REQUIRE(fewer);
-  const std::vector<char> changed = which_changed(made.cut.fine->paths, *fewer);
-  CHECK(std::count(changed.begin(), changed.end(), 1) == 1);
-  CHECK(changed[0]);
-  auto fine = std::make_shared<FineMesh>(*made.cut.fine);
-  fine->paths = *fewer;
-  const CutSurface cut = cut_fine_mesh(fine, made.cut.frame, context);
-  CHECK(patch_count(cut) == patch_count(made.cut) - 1);
-  CHECK(!drop_creases_at_tight_borders(cut));
-  CHECK(!drop_creases(*made.cut.fine, {}));
-}
-
-TEST_CASE("pieces: segments near a place are halved, and no others", "[cut_surface][stage]") {
-  Context context;
-  const Made made = made_of(feature_cube(), context);
-  const PointQ8 corner = made.cut.surface.position[made.cut.copies[0]];
-  const std::optional<Paths> shorter = halve_segments(*made.cut.fine, {corner}, made.cut.longest_edge_q8 / 2);
-  REQUIRE(shorter);
-  REQUIRE(shorter->size() == made.cut.curves.size());
-  size_t more = 0;
-  for (size_t p = 0; p < shorter->size(); ++p) {
-    CHECK((*shorter)[p].seeds.size() <= made.cut.curves[p].seeds.size() + 2);
-    more += (*shorter)[p].seeds.size() - made.cut.curves[p].seeds.size();
-  }
-  CHECK(more >= 3);
 }

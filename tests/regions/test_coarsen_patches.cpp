@@ -7,7 +7,7 @@
 #include "isoshell/io/memory_input.h"
 #include "isoshell/mesh_census.h"
 #include "measure/crossings.h"
-#include "pipeline/patches/patch_rounds.h"
+#include "pipeline/patches/mesh_patches.h"
 #include "pipeline/regions/region_walls.h"
 #include "regions/label_volumes.h"
 #include "regions/region_oracle.h"
@@ -28,7 +28,7 @@ struct RelaxedWalls {
     in_patches.seeds.count = cut->seeds;
     join.vertices = cut->seeds;
     SeededMesh made{{}, relax_in_patches(*cut, in_patches, context).seeds};
-    is_wrong = mesh_once(p, *cut, made, in_patches, report, context).is_wrong;
+    is_wrong = mesh_patches(p, *cut, made, in_patches, report, context).is_wrong;
     mesh.emplace(*cut, made, join);
   }
 

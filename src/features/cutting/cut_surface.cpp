@@ -12,15 +12,17 @@
 #include "features/mesh/refine_mesh.h"
 #include "features/seeds/edge_lengths.h"
 #include "features/seeds/path_seeds.h"
+#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kFacingReach = 0.9;  ///< of curves that see one another, in edge lengths
-constexpr double kFirstCut = 1.5;     ///< lengths of the mesh on which they are found, over the one that is asked for
-constexpr int kMostCuts = 3;          ///< until the fine mesh shows the lengths that are asked for
+constexpr double kFacingReach = 0.9;    ///< of curves that see one another, in edge lengths
+constexpr double kFirstCut = 1.5;       ///< lengths of the mesh on which they are found, over the one that is asked for
+constexpr double kCosineOfTurn = 0.94;  ///< of 20 degrees
+constexpr int kMostCuts = 3;            ///< until the fine mesh shows the lengths that are asked for
 
 /// As snap_coordinate, before it rounds.
 WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
@@ -45,6 +47,31 @@ VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const 
   }
 }
 
+/// Edges at which the surface turns, or ends, or parts: keys, ascending.
+std::vector<uint64_t> turning_edges(const FineMesh& mesh) {
+  const auto normal = [&](uint32_t t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return cross(mesh.position[b] - mesh.position[a], mesh.position[c] - mesh.position[a]);
+  };
+  std::vector<uint64_t> edges;
+  for_each_edge(find_edge_sides(mesh.triangles, mesh.position.size()),
+                [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
+                  if (on_edge.size == 2) {
+                    const WorldPoint m = normal(on_edge[0].half_edge / 3), n = normal(on_edge[1].half_edge / 3);
+                    if (dot(m, n) > kCosineOfTurn * length(m) * length(n)) return;
+                  }
+                  edges.push_back(edge_key(u, v));
+                });
+  return edges;
+}
+
+/// With the edges cut at which the surface turns, and triangles in planes Delaunay after that. Of the long thin
+/// triangles of flat faces the parts would have vertices nearer to one another than the lattice can tell.
+FineMesh without_slivers(FineMesh mesh, Context& context) {
+  const std::vector<uint64_t> turning = turning_edges(mesh);
+  return flip_flat_edges(refine_mesh(std::move(mesh), context, nullptr, &turning));
+}
+
 /// Cut coarsely first, to find the lengths, then as they ask, with a vertex for every seed of a path.
 FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const LatticeFrame& frame,
                  const CutOptions& options, Context& context, MeshTwins& twins) {
@@ -57,6 +84,7 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   if (options.is_rough) fine.parts_of_edge = kPartsOfRoughEdge;
   fine.paths = curve_paths(fine.position, fine.triangles, network);
   find_jagged_paths(fine.position, e, fine.paths);
+  if (!options.is_rough) fine = without_slivers(std::move(fine), context);
   fine = refine_mesh(std::move(fine), context);
   std::fill(fine.edge_length.begin(), fine.edge_length.end(), e);
   const VertexGraph graph = with_asked_lengths(fine, frame, options, context);

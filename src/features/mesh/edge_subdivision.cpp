@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/parallel_ranges.h"
+#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/voxel_set.h"
 #include "isoshell/error.h"
@@ -82,11 +83,12 @@ double longest_fine_edge(const FineMesh& mesh, double edge_length) {
   return std::min(edge_length / mesh.parts_of_edge, kLongestQ8);
 }
 
-EdgeSubdivision::EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours)
+EdgeSubdivision::EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours,
+                                 const std::vector<uint64_t>* only)
     : larger_end_(neighbours ? larger_ones(*neighbours) : larger_ends(mesh)),
       parts_(size_t(larger_end_.items.size()), Parts{0, 0, kNone}) {
   const std::vector<InnerPoints> on_paths = cut_paths(mesh);
-  count_points(mesh, on_paths, memory_bytes);
+  count_points(mesh, on_paths, memory_bytes, only);
   place_points(mesh, on_paths);
   split_paths(mesh);
 }
@@ -153,15 +155,20 @@ std::vector<EdgeSubdivision::InnerPoints> EdgeSubdivision::cut_paths(FineMesh& m
   return cut;
 }
 
-void EdgeSubdivision::count_points(const FineMesh& mesh, const std::vector<InnerPoints>& on_paths,
-                                   int64_t memory_bytes) {
-  std::vector<double> requested(parts_.size());
+void EdgeSubdivision::count_points(const FineMesh& mesh, const std::vector<InnerPoints>& on_paths, int64_t memory_bytes,
+                                   const std::vector<uint64_t>* only) {
+  const auto is_cut = [&](uint32_t u, uint32_t v) {
+    return !only || std::binary_search(only->begin(), only->end(), edge_key(u, v));
+  };
+  std::vector<double> requested(parts_.size(), 0);
   for_each_index(int64_t(0), larger_end_.count(), [&](int64_t u) {
     for (int64_t i = larger_end_.first[u]; i < larger_end_.first[u + 1]; ++i) {
       const uint32_t v = larger_end_.items[i], path = parts_[size_t(i)].on_path;
-      requested[size_t(i)] =
-          path != kNone ? double(on_paths[path].position.size())
-                        : length(mesh.position[v] - mesh.position[size_t(u)]) / longest_between(mesh, uint32_t(u), v);
+      if (path != kNone)
+        requested[size_t(i)] = double(on_paths[path].position.size());
+      else if (is_cut(uint32_t(u), v))
+        requested[size_t(i)] =
+            length(mesh.position[v] - mesh.position[size_t(u)]) / longest_between(mesh, uint32_t(u), v);
     }
   });
   const double most = most_points(mesh, memory_bytes), total = std::accumulate(requested.begin(), requested.end(), 0.0);

@@ -21,9 +21,10 @@ inline double value_between(double a, double b, int64_t i, int64_t parts) {
 class EdgeSubdivision {
  public:
   /// Appends their vertices to the mesh, and cuts its paths. `memory_bytes`: what is made of them may take so much; 0:
-  /// any. `neighbours`: those of the vertices, ascending; null: not known. Throws: usage when they are far more than
-  /// the area needs, or more than that.
-  EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours);
+  /// any. `neighbours`: those of the vertices, ascending; null: not known. `only`: keys of the edges off paths that are
+  /// cut, ascending; null: all. Throws: usage when they are far more than the area needs, or more than that.
+  EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours,
+                  const std::vector<uint64_t>* only);
   /// The vertices from u to v along their edge, without v.
   void append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out) const;
 
@@ -42,7 +43,8 @@ class EdgeSubdivision {
   static InnerPoints cut_path_edge(const FineMesh& mesh, const CurvePath& path, size_t i, size_t& seed,
                                    std::vector<size_t>& seed_at);
   std::vector<InnerPoints> cut_paths(FineMesh& mesh);
-  void count_points(const FineMesh& mesh, const std::vector<InnerPoints>& on_paths, int64_t memory_bytes);
+  void count_points(const FineMesh& mesh, const std::vector<InnerPoints>& on_paths, int64_t memory_bytes,
+                    const std::vector<uint64_t>* only);
   void place_points(FineMesh& mesh, const std::vector<InnerPoints>& on_paths) const;
   void split_paths(FineMesh& mesh) const;
 

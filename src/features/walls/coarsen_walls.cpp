@@ -7,13 +7,13 @@
 
 namespace isoshell {
 
-JoinedPatches coarsen_walls(const CutSurface& cut, const WallTriangles& walls, int64_t vertices,
-                            const Context& context) {
+PatchMesh coarsen_walls(const CutSurface& cut, const WallTriangles& walls, const JoinOptions& options,
+                        const Context& context) {
   return run_with_threads(context, [&] {
     WallMesh mesh(cut, walls);
-    coarsen(mesh, vertices, context);
-    even_out(mesh, vertices, context);
-    return PatchMesh(cut, mesh.vertices(), mesh.triangles(), {vertices}).joined();
+    coarsen(mesh, options.vertices, context);
+    even_out(mesh, options.vertices, context);
+    return PatchMesh(cut, mesh.vertices(), mesh.triangles(), options);
   });
 }
 

@@ -9,7 +9,7 @@ namespace isoshell {
 /// Coarsens the walls and evens them out: triangles are not as even as relaxed ones, and intersect where the walls' own
 /// do only. More vertices than asked for where no edge can be collapsed, and fewer where `walls` have far fewer.
 /// Result: the same for every number of threads. In host memory. Cost: as coarsen and even_out.
-JoinedPatches coarsen_walls(const CutSurface& cut, const WallTriangles& walls, int64_t vertices,
-                            const Context& context);
+PatchMesh coarsen_walls(const CutSurface& cut, const WallTriangles& walls, const JoinOptions& options,
+                        const Context& context);
 
 }  // namespace isoshell

@@ -43,15 +43,12 @@ inline JoinOptions join_options(const PatchOptions& options) {
 /// where the vertices of the frame before are.
 RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context);
 
-/// The same from the seeds of a mesh that is there, in host memory, of another number or with others fixed.
-RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& before, const PatchOptions& options,
-                                    Context& context);
-
 /// The mesh of the patches, joined along their curves; its vertices are as many as seeds were relaxed, each place of a
-/// curve counted once, where that is possible. Where triangles intersect, curves get more seeds there, and all seeds
-/// are relaxed again. Where that does not end it the same is tried on the sheet, with the curves laid onto it. None
-/// where that fails, too: cells are no disks, or patches touch along edges that are on no curve: report.features says
-/// so. With borders that are kept triangles may intersect where the input's do.
+/// curve counted once, where that is possible. Where triangles intersect, patches are simplified from the fine
+/// triangles instead. Where those meet themselves, or so few vertices cannot hold the curves, the same is tried on the
+/// sheet, with the curves laid onto it. None where that fails, too: cells are no disks, or patches touch along edges
+/// that are on no curve: report.features says so. With borders that are kept triangles may intersect where the input's
+/// do.
 std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetWhenNeeded& sheet, SeededMesh& made,
                                                 PatchOptions in_patches, RemeshReport& report, Context& context);
 

@@ -1,4 +1,4 @@
-// relax_in_patches and relax_in_patches_again (see patches.h).
+// relax_in_patches (see patches.h).
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -125,17 +125,6 @@ class PatchLevels {
 RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context) {
   if (options.previous) return relax_patches_from_previous(cut, options, context);
   return PatchLevels(cut, options, context).relax();
-}
-
-RelaxedSeeds relax_in_patches_again(const CutSurface& cut, const SeededMesh& before, const PatchOptions& options,
-                                    Context& context) {
-  const FreeSeeds free_seeds(cut);
-  SeedSet fixed = seeds_on_curves(cut, 0);
-  const FreeSeeds::Counts counts = free_seeds.counts(fixed, options.seeds.count);
-  RelaxOptions relax = for_finest_patches(options);
-  if (!options.tolerance_requested) relax.max_passes = std::min(relax.max_passes, kLastPasses);
-  return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, before, options.seeds.seed), relax,
-                        context);
 }
 
 }  // namespace isoshell

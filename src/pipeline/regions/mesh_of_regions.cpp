@@ -16,10 +16,10 @@
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/feature_report.h"
+#include "pipeline/patches/mend_patches.h"
+#include "pipeline/patches/mesh_patches.h"
 #include "pipeline/patches/new_crossings.h"
-#include "pipeline/patches/patch_rounds.h"
 #include "pipeline/regions/flat_walls.h"
-#include "pipeline/regions/mend_patches.h"
 #include "pipeline/regions/region_walls.h"
 #include "pipeline/regions/restore_volumes.h"
 
@@ -75,7 +75,7 @@ bool has_crossing(const PreparedSurface& p, const JoinedPatches& joined, Context
 std::optional<JoinedPatches> coarsened(const PreparedSurface& p, int64_t vertices, RemeshReport& report,
                                        Context& context) {
   return timed(report, "coarsen", context, [&]() -> std::optional<JoinedPatches> {
-    JoinedPatches made = coarsen_walls(*p.cut, few_triangles_of(p, vertices), vertices, context);
+    JoinedPatches made = coarsen_walls(*p.cut, few_triangles_of(p, vertices), {vertices}, context).joined();
     if (has_inverted(*p.cut, made) || has_crossing(p, made, context)) return {};
     return made;
   });
@@ -106,7 +106,7 @@ std::string join_relaxed(const PreparedSurface& p, SeededMesh& made, const Patch
                          JoinedPatches& joined, RemeshReport& report, Context& context) {
   const CutSurface& cut = *p.cut;
   const JoinOptions options = join_options(in_patches);
-  WrongPatches wrong = mesh_once(p, cut, made, in_patches, report, context);
+  WrongPatches wrong = mesh_patches(p, cut, made, in_patches, report, context);
   if (wrong.what.empty()) {
     joined = timed(report, "angles", context, [&] { return join_and_widen(cut, made, options, context); });
     return has_inverted(cut, joined) ? "a region would be inside out" : "";

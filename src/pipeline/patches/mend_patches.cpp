@@ -1,5 +1,5 @@
 // See mend_patches.h.
-#include "pipeline/regions/mend_patches.h"
+#include "pipeline/patches/mend_patches.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -19,6 +19,7 @@ constexpr size_t kMostCoarse = 2;  ///< one fine triangle in so many is in a coa
 std::vector<uint32_t> inverted_patches(const CutSurface& cut, const JoinedPatches& joined) {
   const std::vector<uint32_t>& patch = joined.features.patch;
   std::vector<uint32_t> inverted;
+  if (!cut.regions) return inverted;
   std::vector<char> is_inverted(size_t(joined.mesh.position.size()), 0);
   for (const uint32_t v : find_inverted_regions(cut, joined.mesh, patch)) is_inverted[v] = 1;
   for (size_t t = 0; t < patch.size(); ++t) {
