@@ -233,15 +233,15 @@ def test_surfaces_without_thickness(run, tmp_path, claim):
 
 
 @claims("With `--boundary keep` the result has the intersections of the input's own triangles",
-        "a warning counts them, the exit status is 0, and `--require no-self-intersections` refuses it")
+        "a warning counts them", "exit status is 6 unless `--allow-intersections` is given")
 def test_intersections_of_the_input(run, tmp_path, claim):
     crossed = joined(sheet((1, 0, 0), (0, 1, 0)), sheet((1, 0, 0), (0, 0, 1), (0, 0.51, -0.5)))
     source = write_obj(tmp_path / "crossed.obj", *crossed)
     usual = ("--vertices", 500, "--boundary", "keep")
     done = run(source, *usual)
-    assert done.status == 0 and done.stats["topology"]["self_intersections"] > 0
+    assert done.status == 6 and done.stats["topology"]["self_intersections"] > 0
     assert "intersect where the input's own triangles do" in done.said
-    assert run(source, *usual, "--require", "no-self-intersections").status == 6
+    assert run(source, *usual, "--allow-intersections").status == 0
 
 
 @claims("Genus and number of components follow the closed voxels", "`--require genus=G,components=N`")

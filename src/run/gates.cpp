@@ -273,9 +273,6 @@ std::string listed(bool with_words, Holds holds) {
   return list;
 }
 
-/// With borders that are kept, triangles intersect only where the input's do.
-bool are_the_inputs(const RunRecord& record) { return record.report.features.border_loops > 0; }
-
 }  // namespace
 
 bool Gates::any() const {
@@ -343,7 +340,7 @@ std::vector<std::string> missed_gates(const Gates& gates, const RunRecord& recor
   if (record.options.previous) m.coherence = &report.coherence;
   std::vector<std::string> missed = missed_gates(gates, m);
   const bool is_asked = gates.no_self_intersections || gates.regions;
-  if (pairs > 0 && !gates.allow_intersections && !is_asked && !are_the_inputs(record))
+  if (pairs > 0 && !gates.allow_intersections && !is_asked)
     missed.insert(missed.begin(), "the result intersects itself in " + counted(pairs, "pair", "pairs") +
                                       " of triangles; --allow-intersections takes it as it is");
   for (const WrittenFile& file : record.files)
