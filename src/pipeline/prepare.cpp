@@ -135,8 +135,8 @@ class GridSearch {
 
   /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
   PreparedSurface best_grid() {
-    const int32_t usual = resolution_for_needle(plan_.first_resolution());
-    const int32_t first = plan_.chooses_grid() && wants_lengths(plan_.options)
+    const int32_t by_area = plan_.first_resolution(), usual = resolution_for_needle(by_area);
+    const int32_t first = plan_.chooses_grid() && wants_lengths(plan_.options) && usual == by_area
                               ? resolution_for_lengths(soup_, plan_, usual, report_, context_)
                               : usual;
     // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
@@ -174,18 +174,18 @@ class GridSearch {
     return memory_allows(estimate_plan(plan_, soup_, resolution), is_refining, report_, context_);
   }
 
-  /// Of a needle far thinner than a voxel of the finest grid the grid on which its walls, grown, have room for the
-  /// vertices, and no finer one; of all else the resolution that is given. The voxels that hold a needle are as many as
-  /// it is long, those that hold other surfaces as many as their area.
+  /// Of a needle, far thinner than a voxel, the grid on which its walls, grown, have room for the vertices, and no
+  /// finer one; of all else the resolution that is given. The voxels that hold a needle are about as many as it is
+  /// long, those that hold other surfaces as many as their area.
   int32_t resolution_for_needle(int32_t resolution) {
-    if (resolution < kMaxResolution || !plan_.chooses_grid() || !allows(resolution, false)) return resolution;
-    const LatticeSurface surface = snapped(resolution);
-    const auto sites =
-        double(timed(report_, "voxelize", context_, [&] { return voxelize(surface, context_).voxels.voxel_count(); }));
-    const double voxel = surface.frame.voxel_size, area_vox = plan_.input.area_world / (voxel * voxel);
+    const double voxel = LatticeFrame::around(plan_.box.min, plan_.box.max, resolution).voxel_size;
+    const double area_vox = plan_.input.area_world / (voxel * voxel);
+    if (!plan_.chooses_grid() || area_vox > 2 * resolution || !allows(resolution, false)) return resolution;
+    const auto sites = double(timed(report_, "voxelize", context_,
+                                    [&] { return voxelize(snapped(resolution), context_).voxels.voxel_count(); }));
     if (area_vox > sites / 2) return resolution;
     const double wanted = kNeedleVoxelsPerVertex * double(plan_.target.vertices) / sites * resolution;
-    return int32_t(std::clamp<double>(wanted, kMinDefaultResolution, resolution));
+    return int32_t(std::clamp<double>(wanted, std::min(kMinDefaultResolution, resolution), resolution));
   }
 
   LatticeSurface snapped(int32_t resolution) {
