@@ -1,4 +1,4 @@
-// Patches of a cut surface apart from the others: as surfaces of their own, in their planes, and along fewer curves.
+// Some patches of a cut surface on their own.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -72,8 +72,8 @@ TEST_CASE("pieces: a mesh of every second patch goes to a piece and back", "[cut
     }
     const SeededMesh part = gather_patches(piece.cut, {{made.mesh, in_piece(piece, made.cut)}});
     CHECK(part.mesh.triangles.size() < made.mesh.mesh.triangles.size());
-    const SeededMesh back = gather_patches(
-        made.cut, {{part, piece.in_whole}, {made.mesh, vertices_after(made.cut, made.cut, inverse(chosen))}});
+    const SeededMesh back =
+        gather_patches(made.cut, {{part, piece.in_whole}, {made.mesh, vertices_in(made.cut, inverse(chosen))}});
     CHECK(back.seeds.size() == made.mesh.seeds.size());
     CHECK(corners_of(back.mesh) == corners_of(made.mesh.mesh));
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/cut_fine_mesh.h"
@@ -47,7 +46,7 @@ std::vector<char> used_by(const DualMesh& mesh, int64_t vertices) {
 /// What becomes of the seeds that a surface has on its curves once free ones are put behind them.
 class GatheredMesh {
  public:
-  explicit GatheredMesh(const CutSurface& to) : to_(to), seeds_(seeds_on_curves(to, 0)) {
+  explicit GatheredMesh(const CutSurface& to) : seeds_(seeds_on_curves(to, 0)) {
     position_.assign(seeds_.position.begin(), seeds_.position.end());
     normal_.assign(seeds_.normal.begin(), seeds_.normal.end());
     home_.assign(seeds_.home.begin(), seeds_.home.end());
@@ -61,7 +60,7 @@ class GatheredMesh {
     for (int64_t s = 0; s < seeds.size(); ++s) {
       const uint32_t home = from.vertex[seeds.home[s]];
       if (home == kNone || (s >= seeds.fixed.count && !is_used[size_t(s)])) continue;
-      number[size_t(s)] = s < seeds.fixed.count ? fixed_at(home) : uint32_t(home_.size());
+      number[size_t(s)] = s < seeds.fixed.count ? seeds_.fixed.of_vertex[home] : uint32_t(home_.size());
       if (number[size_t(s)] != home_.size()) continue;
       position_.push_back(seeds.position[s]);
       normal_.push_back(seeds.normal[s]);
@@ -88,19 +87,7 @@ class GatheredMesh {
   }
 
  private:
-  /// What a seed on a curve becomes: the same, a free one where the curve is gone, the first of its copies there, or
-  /// none where the curve has none now.
-  uint32_t fixed_at(uint32_t home) {
-    if (to_.place[home] != kNone) {
-      const uint32_t seed = seeds_.fixed.of_vertex[home];
-      return home_[seed] == home ? seed : kNone;
-    }
-    return freed_.try_emplace(home, uint32_t(home_.size())).first->second;
-  }
-
-  const CutSurface& to_;
   SeedSet seeds_;
-  std::map<uint32_t, uint32_t> freed_;  ///< by their vertices
   std::vector<PointQ8> position_, at_;  ///< of the seeds, of the vertices of the mesh
   std::vector<Normal8> normal_;
   std::vector<uint32_t> home_;
@@ -136,11 +123,10 @@ CutPiece piece_of(const CutSurface& whole, const std::vector<char>& is_chosen, C
   return piece;
 }
 
-std::vector<uint32_t> vertices_after(const CutSurface& before, const CutSurface& after,
-                                     const std::vector<char>& stays) {
-  std::vector<uint32_t> vertex(size_t(before.surface.vertex_count()), kNone);
-  for (size_t c = 0; c < before.corner.size(); ++c)
-    if (stays[before.surface.patch[before.corner[c]]]) vertex[before.corner[c]] = after.corner[c];
+std::vector<uint32_t> vertices_in(const CutSurface& cut, const std::vector<char>& stays) {
+  std::vector<uint32_t> vertex(size_t(cut.surface.vertex_count()), kNone);
+  for (size_t v = 0; v < vertex.size(); ++v)
+    if (stays[cut.surface.patch[int64_t(v)]]) vertex[v] = uint32_t(v);
   return vertex;
 }
 

@@ -15,9 +15,8 @@ struct CutPiece {
 /// `is_chosen`: per patch of the whole surface, which patches the piece has. Cost: as cut_fine_mesh of these.
 CutPiece piece_of(const CutSurface& whole, const std::vector<char>& is_chosen, Context& context);
 
-/// Per vertex of a surface that of another one, which was cut from the same triangles along other paths; kNone in
-/// patches that do not stay.
-std::vector<uint32_t> vertices_after(const CutSurface& before, const CutSurface& after, const std::vector<char>& stays);
+/// Each vertex of a surface in the patches that stay; kNone in the others.
+std::vector<uint32_t> vertices_in(const CutSurface& cut, const std::vector<char>& stays);
 
 /// The inverse of where the vertices of a piece are in the whole: kNone off the piece.
 std::vector<uint32_t> in_piece(const CutPiece& piece, const CutSurface& whole);
@@ -34,8 +33,7 @@ struct PatchesMade {
 };
 
 /// The mesh of a surface from meshes of its patches, each of which is in one of them or in none: the seeds on its
-/// curves, then the free ones as they come. Seeds on a curve that the surface does not have are free, and free
-/// seeds without triangles are left out. In host memory.
+/// curves, then the free ones as they come. Free seeds without triangles are left out. In host memory.
 SeededMesh gather_patches(const CutSurface& to, const std::vector<PatchesMade>& from);
 
 }  // namespace isoshell

@@ -188,7 +188,7 @@ std::optional<PatchMesh> coarsen_patches(const CutSurface& cut, const PatchMesh&
   return run_with_threads(context, [&]() -> std::optional<PatchMesh> {
     RelaxedPart part(cut, relaxed, is_coarse);
     const FinePatches fine(cut, is_coarse);
-    WallMesh coarse(cut, {fine.triangles, fine.source_face});
+    WallMesh coarse(cut, {fine.triangles, fine.source_face, cut.fine->position.size()});
     SharedVertices shared = keep_seeds(part, is_coarse, coarse);
     const int64_t vertices = shared.seeds + part.count_others();
     const std::vector<RegionTriangle> numbered = part.numbered_as(coarse);

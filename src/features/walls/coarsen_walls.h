@@ -1,10 +1,15 @@
-// The walls of a cut surface with as many vertices as asked for, whatever they are like.
+// All patches of a cut surface with as many vertices as asked for, whatever they are like.
 #pragma once
 
 #include "features/angles/patch_mesh.h"
 #include "features/walls/wall_mesh.h"
 
 namespace isoshell {
+
+/// The fine triangles of all patches.
+inline WallTriangles all_triangles_of(const CutSurface& cut) {
+  return {cut.fine->triangles, cut.fine->source_face, cut.fine->position.size()};
+}
 
 /// Coarsens the walls and evens them out: triangles are not as even as relaxed ones, and intersect where the walls' own
 /// do only. More vertices than asked for where no edge can be collapsed, and fewer where `walls` have far fewer.

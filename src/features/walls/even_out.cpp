@@ -148,8 +148,8 @@ void even_out(WallMesh& mesh, int64_t vertices, const Context& context) {
       here.flip_edges(cost_of_valence);
       here.move_vertices();
     });
-    if (round % kRoundsToSplit != 0 || mesh.vertex_count() > vertices) continue;
-    split_long_edges(mesh, vertices / kMostSplits);
+    if (round % kRoundsToSplit != 0) continue;
+    if (mesh.vertex_count() <= vertices) split_long_edges(mesh, vertices / kMostSplits);
     coarsen(mesh, vertices, context);
   }
   for (const bool is_shifted : {false, true})

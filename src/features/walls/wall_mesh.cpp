@@ -23,12 +23,6 @@ std::array<uint32_t, 3> ascending(std::array<uint32_t, 3> corners) {
   return corners;
 }
 
-uint32_t largest_vertex(const MeshTriangles& triangles) {
-  uint32_t last = 0;
-  for (const auto& t : triangles) last = std::max({last, t[0], t[1], t[2]});
-  return last;
-}
-
 /// Between the edges that there are, on average, and those that there will be: a triangle meets few cells of that size,
 /// and few triangles meet a cell.
 double cell_between(const FineMesh& fine, const MeshTriangles& triangles, double edge_q8) {
@@ -42,23 +36,23 @@ double cell_between(const FineMesh& fine, const MeshTriangles& triangles, double
 WallMesh::WallMesh(const CutSurface& cut, const WallTriangles& walls)
     : lookup_(std::make_shared<CutLookup>(cut)),
       space_(cell_between(*cut.fine, walls.triangles, cut.longest_edge_q8), walls.triangles.size()) {
-  list_vertices(largest_vertex(walls.triangles));
+  list_vertices(walls.vertices);
   Edges on_curve;
   for (uint32_t c = 0; c < cut.fine->paths.size(); ++c) list_curve(c, cut.fine->paths[c], on_curve);
   std::sort(on_curve.begin(), on_curve.end());
   list_triangles(walls, on_curve);
 }
 
-void WallMesh::list_vertices(uint32_t last) {
+void WallMesh::list_vertices(size_t count) {
   const CutSurface& cut = lookup_->cut();
-  vertices_.resize(size_t(last) + 1);
+  vertices_.resize(count);
   around_.resize(vertices_.size());
   // Where sheets touch at a point, a curve that ends there is on the border of some of them alone: a copy there is
   // home.
   std::vector<char> has_place(vertices_.size(), 0);
   for (size_t c = 0; c < cut.corner.size(); ++c) {
     const uint32_t number = cut.fine->triangles[c / 3][c % 3], copy = cut.corner[c];
-    if (number > last || has_place[number]) continue;
+    if (number >= count || has_place[number]) continue;
     has_place[number] = cut.place[copy] != kNone;
     vertices_[number].home = copy;
     vertices_[number].position = lookup_->position(copy);

@@ -1,4 +1,4 @@
-// All walls of a cut surface as one mesh, changed edge by edge so that no triangles come to meet.
+// Patches of a cut surface as one mesh, changed edge by edge so that no triangles come to meet.
 #pragma once
 
 #include <array>
@@ -19,10 +19,11 @@ namespace isoshell {
 constexpr double kTwoRootThree =
     3.4641016151377544;  ///< sum of the squared edges of an equilateral triangle over twice its area
 
-/// Triangles on vertices of a fine mesh: its own, or those that it was refined from, on its first vertices.
+/// Triangles on vertices of a fine mesh: some of its own, or those that it was refined from, on its first vertices.
 struct WallTriangles {
   const MeshTriangles& triangles;
   const std::vector<uint32_t>& source_face;  ///< per triangle, as in FineMesh
+  size_t vertices;                           ///< of the fine mesh, that they are on
 };
 
 /// What changes of a WallMesh take memory for: kept, so that they do not take it each time.
@@ -34,11 +35,11 @@ struct WallScratch {
 };
 
 /// A change keeps the topology of every region, the patches and the curves. One that would not, or after
-/// which a triangle met another one outside of corners that they share, is not made; no collapse or split turns a
-/// triangle over or makes a needle of it. Vertices and triangles keep their numbers; those that are gone have no
-/// triangles, and one corner twice. Cost of each: the triangles around its vertices, and a look at those whose boxes
-/// meet them. Several threads may make changes at once, each with its own scratch, but for splits, where the triangles
-/// around their vertices, before and after, lie in boxes that do not meet.
+/// which a triangle met another one outside of corners that they share, is not made; no split, and no
+/// collapse with Shapes::good, turns a triangle over or makes a needle of it. Vertices and triangles keep their
+/// numbers; those that are gone have no triangles, and one corner twice. Cost of each: the triangles around its
+/// vertices, and a look at those whose boxes meet them. Several threads may make changes at once, each with its own
+/// scratch, but for splits, where the triangles around their vertices, before and after, lie in boxes that do not meet.
 class WallMesh {
  public:
   /// The fine mesh and `cut` must outlive it. Cost: O(fine triangles), and a sort of the edges of curves.
@@ -93,7 +94,7 @@ class WallMesh {
   };
   using Edges = std::vector<std::pair<uint64_t, uint32_t>>;  ///< keys, and what they are on
 
-  void list_vertices(uint32_t last);
+  void list_vertices(size_t count);
   void list_curve(uint32_t number, const CurvePath& path, Edges& edges);
   void list_triangles(const WallTriangles& walls, const Edges& on_curve);
   std::vector<Side> sides_of(uint32_t u, uint32_t v) const;

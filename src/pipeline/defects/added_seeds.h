@@ -37,7 +37,7 @@ class AddedSeeds {
     made.seeds.position = with_more(made.seeds.position, position_);
     made.seeds.normal = with_more(made.seeds.normal, normal_);
     made.seeds.home = with_more(made.seeds.home, home_);
-    made = gather_patches(cut_, {{made, vertices_after(cut_, cut_, std::vector<char>(patch_count(cut_), 1))}});
+    made = gather_patches(cut_, {{made, vertices_in(cut_, std::vector<char>(patch_count(cut_), 1))}});
   }
 
  private:

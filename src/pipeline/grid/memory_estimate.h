@@ -7,6 +7,7 @@
 namespace isoshell {
 
 constexpr int32_t kCoarsestGrid = 8;
+constexpr double kBytesPerFinePoint = 780;  ///< patches that are cut, what relaxes on them, all of them coarsened
 
 /// As estimate_run, of a surface that parts no regions.
 RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t resolution);

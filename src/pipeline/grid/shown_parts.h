@@ -6,7 +6,7 @@
 
 namespace isoshell {
 
-constexpr double kLeastCellVox = 0.25;  ///< area of cells: of narrower ones the lattice cannot tell the corners apart
+constexpr double kLeastCellVox = 0.25;  ///< area of cells: with less a surface is thinner than a voxel all over
 
 /// Whether so many vertices can show each component and each handle of the input; clouds of smoke have hundreds.
 bool shows_all_parts(int64_t vertices, const InputTopology& input);

@@ -8,12 +8,19 @@
 #include "features/angles/widen_angles.h"
 #include "features/mesh/feature_mesh.h"
 #include "features/walls/coarsen_patches.h"
+#include "features/walls/coarsen_walls.h"
+#include "isoshell/readable.h"
 #include "pipeline/defects/inverted_regions.h"
+#include "pipeline/grid/memory_estimate.h"
+#include "pipeline/grid/timed.h"
+#include "pipeline/patches/new_crossings.h"
 
 namespace isoshell {
 namespace {
 
-constexpr size_t kMostCoarse = 2;  ///< one fine triangle in so many is in a coarse patch, at most
+constexpr size_t kMostCoarse = 2;              ///< one fine triangle in so many is in a coarse patch, at most
+constexpr size_t kTrianglesPerCrossing = 256;  ///< fine ones; where more of them meet, parts lie on each other
+constexpr int64_t kMostMissed = 10;            ///< one vertex in so many more than asked for
 
 /// Those around regions that are inside out.
 std::vector<uint32_t> inverted_patches(const CutSurface& cut, const JoinedPatches& joined) {
@@ -36,6 +43,30 @@ size_t count_triangles(const CutSurface& cut, const std::vector<char>& is_coarse
   return count;
 }
 
+/// Whether the fine triangles of a surface meet nearly nowhere, on the lattice.
+bool is_nearly_embedded(const CutSurface& cut, const NewCrossings& crossings) {
+  DualMesh fine;
+  fine.position = Buffer<PointQ8>(int64_t(cut.fine->position.size()));
+  fine.triangles = Buffer<TriangleIndices>(int64_t(cut.fine->triangles.size()));
+  std::transform(cut.fine->position.begin(), cut.fine->position.end(), fine.position.begin(), rounded);
+  std::transform(cut.fine->triangles.begin(), cut.fine->triangles.end(), fine.triangles.begin(), [](const auto& t) {
+    return TriangleIndices{t[0], t[1], t[2]};
+  });
+  return kTrianglesPerCrossing * crossings.all(fine, {}).size() <= cut.fine->triangles.size();
+}
+
+bool memory_allows(const CutSurface& cut, const Context& context) {
+  const double bytes = kBytesPerFinePoint * double(cut.fine->position.size());
+  return context.memory_limit_bytes <= 0 || bytes <= double(context.memory_limit_bytes);
+}
+
+void warn_of_coarse(const WrongPatches& wrong, RemeshReport& report) {
+  report.warnings.push_back(
+      "in " + std::to_string(std::count(wrong.is_wrong.begin(), wrong.is_wrong.end(), 1)) + " of " +
+      counted(int64_t(wrong.is_wrong.size()), "patch", "patches") +
+      " edges were collapsed and flipped, not relaxed, and triangles are less even: " + wrong.what);
+}
+
 }  // namespace
 
 std::optional<JoinedPatches> mend_patches(const CutSurface& cut, const SeededMesh& made, std::vector<char>& is_wrong,
@@ -54,6 +85,31 @@ std::optional<JoinedPatches> mend_patches(const CutSurface& cut, const SeededMes
     if (std::all_of(more.begin(), more.end(), [&](uint32_t patch) { return is_wrong[patch]; })) return {};
     for (const uint32_t patch : more) is_wrong[patch] = 1;
   }
+}
+
+std::optional<JoinedPatches> simplify_instead(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made,
+                                              WrongPatches wrong, const PatchOptions& in_patches, RemeshReport& report,
+                                              Context& context) {
+  return timed(report, "coarsen", context, [&]() -> std::optional<JoinedPatches> {
+    if (!memory_allows(cut, context)) return {};
+    NewCrossings crossings(p, cut, context);
+    const JoinOptions options = join_options(in_patches);
+    const auto is_mesh = [&](const std::optional<JoinedPatches>& joined) {
+      if (!joined || joined->mesh.position.size() > options.vertices + options.vertices / kMostMissed) return false;
+      const TrianglePairs pairs = crossings.all(joined->mesh, {});
+      report.optimize.self_intersections = int64_t(pairs.size());
+      return crossings.wrong_of(joined->mesh, pairs).empty();
+    };
+    std::optional<JoinedPatches> joined = mend_patches(cut, made, wrong.is_wrong, options, context);
+    if (!is_mesh(joined)) {
+      if (!is_nearly_embedded(cut, crossings)) return {};
+      joined = widened(coarsen_walls(cut, all_triangles_of(cut), options, context), context);
+      std::fill(wrong.is_wrong.begin(), wrong.is_wrong.end(), char(1));
+      if (!is_mesh(joined)) return {};
+    }
+    warn_of_coarse(wrong, report);
+    return joined;
+  });
 }
 
 }  // namespace isoshell

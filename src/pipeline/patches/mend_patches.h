@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "features/angles/patch_mesh.h"
+#include "pipeline/patches/mesh_patches.h"
 
 namespace isoshell {
 
@@ -15,5 +16,13 @@ namespace isoshell {
 /// ones.
 std::optional<JoinedPatches> mend_patches(const CutSurface& cut, const SeededMesh& made, std::vector<char>& is_wrong,
                                           const JoinOptions& options, Context& context);
+
+/// The same of a surface that is no region's, or where that gives no mesh all patches coarsened: every curve stays, and
+/// triangles meet where those of the input do, if anywhere. A warning says how many patches are coarse. None where many
+/// fine triangles meet each other, where so few vertices cannot hold the curves, and where the memory limit does not
+/// allow it.
+std::optional<JoinedPatches> simplify_instead(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made,
+                                              WrongPatches wrong, const PatchOptions& options, RemeshReport& report,
+                                              Context& context);
 
 }  // namespace isoshell

@@ -81,7 +81,7 @@ class PatchMesher {
     bring_to_host(made);
     const SeededMesh whole = std::move(made);
     const PerPatch others = keeps_others ? inverse(chosen) : none_of(cut);
-    const std::vector<uint32_t> kept = vertices_after(cut, cut, others);
+    const std::vector<uint32_t> kept = vertices_in(cut, others);
     if (!any(chosen)) {
       made = gather_patches(cut, {{whole, kept}});
       return;

@@ -11,7 +11,6 @@
 #include "features/curves/find_curves.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/edge_subdivision.h"
-#include "features/walls/coarsen_walls.h"
 #include "geometry/triangle_grid.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/to_host.h"
@@ -28,7 +27,6 @@
 #include "pipeline/patches/given_lines.h"
 #include "pipeline/patches/mend_patches.h"
 #include "pipeline/patches/mesh_patches.h"
-#include "pipeline/patches/new_crossings.h"
 #include "pipeline/patches/part_fans.h"
 #include "pipeline/patches/sheet_when_needed.h"
 #include "pipeline/sheet/crease_search.h"
@@ -139,46 +137,6 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
   lost.erase(std::remove_if(lost.begin() + int64_t(first), lost.end(), is_no_seam), lost.end());
 }
 
-constexpr size_t kTrianglesPerCrossing = 256;  ///< fine ones; where more of them meet, parts lie on each other
-constexpr int64_t kMostMissed = 10;            ///< one vertex in so many more than asked for
-
-/// Whether the fine triangles of a surface meet nearly nowhere, on the lattice.
-bool is_nearly_embedded(const CutSurface& cut, const NewCrossings& crossings) {
-  DualMesh fine;
-  fine.position = Buffer<PointQ8>(int64_t(cut.fine->position.size()));
-  fine.triangles = Buffer<TriangleIndices>(int64_t(cut.fine->triangles.size()));
-  std::transform(cut.fine->position.begin(), cut.fine->position.end(), fine.position.begin(), rounded);
-  std::transform(cut.fine->triangles.begin(), cut.fine->triangles.end(), fine.triangles.begin(), [](const auto& t) {
-    return TriangleIndices{t[0], t[1], t[2]};
-  });
-  return kTrianglesPerCrossing * crossings.all(fine, {}).size() <= cut.fine->triangles.size();
-}
-
-/// The patches with those simplified from the fine triangles that are wrong, or all, where these are most of the
-/// surface: that keeps every curve, and lets no triangles come to meet. None where the fine triangles themselves meet,
-/// or where so few vertices cannot keep every curve.
-std::optional<JoinedPatches> simplified_instead(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made,
-                                                std::vector<char>& is_wrong, const PatchOptions& in_patches,
-                                                RemeshReport& report, Context& context) {
-  return timed(report, "coarsen", context, [&]() -> std::optional<JoinedPatches> {
-    NewCrossings crossings(p, cut, context);
-    const int64_t asked = in_patches.seeds.count;
-    const auto is_mesh = [&](const JoinedPatches& joined, int64_t most_vertices) {
-      if (joined.mesh.position.size() > most_vertices) return false;
-      const TrianglePairs pairs = crossings.all(joined.mesh, {});
-      report.optimize.self_intersections = int64_t(pairs.size());
-      return crossings.wrong_of(joined.mesh, pairs).empty();
-    };
-    if (!is_nearly_embedded(cut, crossings)) return {};
-    std::optional<JoinedPatches> joined = mend_patches(cut, made, is_wrong, join_options(in_patches), context);
-    if (joined && is_mesh(*joined, asked)) return joined;
-    joined = widened(
-        coarsen_walls(cut, {cut.fine->triangles, cut.fine->source_face}, join_options(in_patches), context), context);
-    if (!is_mesh(*joined, asked + asked / kMostMissed)) return {};
-    return joined;
-  });
-}
-
 /// The mesh of patches, or why there is none.
 struct MeshOfPatches {
   std::shared_ptr<const CutSurface> cut;  ///< that it is on in the end
@@ -195,7 +153,7 @@ MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const Cu
     if (wrong.what.empty())
       out.joined =
           timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(options), context); });
-    else if (auto simplified = simplified_instead(p, *cut, made, wrong.is_wrong, options, report, context))
+    else if (auto simplified = simplify_instead(p, *cut, made, wrong, options, report, context))
       out.joined = std::move(*simplified);
     else
       return wrong.what;

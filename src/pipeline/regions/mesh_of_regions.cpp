@@ -59,8 +59,8 @@ TriangleMesh walls_themselves(const RegionWalls& walls) {
 WallTriangles few_triangles_of(const PreparedSurface& p, int64_t vertices) {
   const FeatureMesh& walls = p.walls->mesh;
   if (p.walls->regions.are_of_voxels && int64_t(walls.vertices.size()) > kManyVertices * vertices)
-    return {walls.triangles, walls.source_face};
-  return {p.cut->fine->triangles, p.cut->fine->source_face};
+    return {walls.triangles, walls.source_face, walls.vertices.size()};
+  return all_triangles_of(*p.cut);
 }
 
 bool has_inverted(const CutSurface& cut, const JoinedPatches& joined) {

@@ -12,13 +12,13 @@
 #include "geometry/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
+#include "pipeline/grid/memory_estimate.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/regions/region_lengths.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kBytesPerFinePoint = 780;        ///< the cut walls, what relaxes on them, some of them coarsened
 constexpr double kBytesPerWallVertex = 60;        ///< the walls as they came in, welded
 constexpr double kBytesPerThinnedVertex = 420;    ///< where most vertices go before walls are cut: meanwhile
 constexpr double kBytesOfSmallWalls = 112 << 20;  ///< which stay as they are then

@@ -26,7 +26,7 @@
 namespace isoshell {
 namespace {
 
-/// Of relaxed walls of brains with smaller parts, few triangles intersect and rounds part them; above, cells of
+/// Of relaxed walls of brains with smaller parts, few triangles intersect and few are coarsened; above, cells of
 /// hundreds are no disks.
 constexpr double kMostNear = 0.11;
 constexpr int64_t kManyVertices = 10000;  ///< with fewer it costs little to relax them and see

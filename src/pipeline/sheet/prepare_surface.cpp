@@ -107,7 +107,9 @@ class Preparation {
   /// Whether the sheet is far thinner than a voxel all over, as that of a needle: it has no area for so many cells.
   bool has_no_room(const PreparedSurface& p) const {
     const double voxel = p.sheet.frame.voxel_size;
-    return sheet_area_world(p.sheet) < kLeastCellVox * voxel * voxel * double(p.target_of_input.vertices);
+    const int64_t cells = p.target_of_input.vertices;
+    return p.sheet.vertex_count() >= 2 * cells &&  // with fewer the grid is too coarse for anything
+           sheet_area_world(p.sheet) < kLeastCellVox * voxel * voxel * double(cells);
   }
 
   /// Until edges turn around it. The sheet's area, and so its edges, grow as it does.
