@@ -9,6 +9,7 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kFewestVerticesPerPart = 24;
+constexpr double kLeastCellVox = 0.25;  ///< area of a cell of a surface that is no needle
 
 int64_t vertices_for_parts(const InputTopology& input) {
   return kFewestVerticesPerPart * (input.components + std::max<int64_t>(0, input.genus));
@@ -18,6 +19,12 @@ std::string length_text(double world) {
   std::ostringstream text;
   text << world;
   return text.str();
+}
+
+/// Of the input; 0 where that is not known.
+double area_vox(const PreparedSurface& p) {
+  const double voxel = p.surface.frame.voxel_size;
+  return p.surface.topology.area_world / (voxel * voxel);
 }
 
 void warn_of_grown_solid(const PreparedSurface& p, const InputTopology& input, RemeshReport& report) {
@@ -35,7 +42,7 @@ void warn_of_grown_solid(const PreparedSurface& p, const InputTopology& input, R
         thickness + " apart; --close-gaps may close it");
     return;
   }
-  if (shows_most_handles(p.target_of_input.vertices, input)) {
+  if (is_needle(p)) {
     report.warnings.push_back("the surface is a needle, far thinner than its edges are long: its walls were grown to " +
                               thickness + "; with more --vertices they stay thinner");
     return;
@@ -56,13 +63,16 @@ bool shows_most_handles(int64_t vertices, const InputTopology& input) {
   return vertices >= 2 * kFewestVerticesPerPart * input.genus;
 }
 
+bool is_needle(const PreparedSurface& p) {
+  const double area = area_vox(p);
+  return area > 0 && area < kLeastCellVox * double(p.target_of_input.vertices);
+}
+
 int64_t smallest_component_q16(const PreparedSurface& p) {
   const InputTopology& input = p.surface.topology;
   const int64_t vertices = p.target_of_input.vertices;
   if (input.closed && input.oriented && shows_all_parts(vertices, input)) return 0;
-  const double cell_world = input.area_world / double(std::max<int64_t>(64, vertices));
-  const double voxel = p.surface.frame.voxel_size, cell_vox = cell_world / (voxel * voxel);
-  return cell_vox < kLeastCellVox ? 0 : int64_t(4 * cell_vox * 65536);
+  return is_needle(p) ? 0 : int64_t(4 * area_vox(p) / double(std::max<int64_t>(64, vertices)) * 65536);
 }
 
 void warn_of_topology(const PreparedSurface& p, const InputTopology& input, RemeshReport& report) {

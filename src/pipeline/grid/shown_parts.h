@@ -6,13 +6,15 @@
 
 namespace isoshell {
 
-constexpr double kLeastCellVox = 0.25;  ///< area of cells: with less a surface is thinner than a voxel all over
-
 /// Whether so many vertices can show each component and each handle of the input; clouds of smoke have hundreds.
 bool shows_all_parts(int64_t vertices, const InputTopology& input);
 
 /// False for smoke and foam: walls and gaps are as narrow as handles are many, and would cross.
 bool shows_most_handles(int64_t vertices, const InputTopology& input);
+
+/// Whether a surface has so little area that cells of the result would be far narrower than voxels: it is thinner than
+/// a voxel all over.
+bool is_needle(const PreparedSurface& prepared);
 
 /// Sheet components smaller than a few cells are noise of dirty input; a clean input has none to lose, unless there are
 /// more than the vertices can show.

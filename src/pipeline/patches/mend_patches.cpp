@@ -20,7 +20,6 @@ namespace {
 
 constexpr size_t kMostCoarse = 2;              ///< one fine triangle in so many is in a coarse patch, at most
 constexpr size_t kTrianglesPerCrossing = 256;  ///< fine ones; where more of them meet, parts lie on each other
-constexpr int64_t kMostMissed = 10;            ///< one vertex in so many more than asked for
 
 /// Those around regions that are inside out.
 std::vector<uint32_t> inverted_patches(const CutSurface& cut, const JoinedPatches& joined) {
@@ -95,7 +94,7 @@ std::optional<JoinedPatches> simplify_instead(const PreparedSurface& p, const Cu
     NewCrossings crossings(p, cut, context);
     const JoinOptions options = join_options(in_patches);
     const auto is_mesh = [&](const std::optional<JoinedPatches>& joined) {
-      if (!joined || joined->mesh.position.size() > options.vertices + options.vertices / kMostMissed) return false;
+      if (!joined || !CountReport{options.vertices, joined->mesh.position.size(), {}}.is_near()) return false;
       const TrianglePairs pairs = crossings.all(joined->mesh, {});
       report.optimize.self_intersections = int64_t(pairs.size());
       return crossings.wrong_of(joined->mesh, pairs).empty();

@@ -139,7 +139,7 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
 
 /// The mesh of patches, or why there is none.
 struct MeshOfPatches {
-  std::shared_ptr<const CutSurface> cut;  ///< that it is on in the end
+  std::shared_ptr<const CutSurface> cut;  ///< that it is on
   TriangleMesh mesh;
   JoinedPatches joined;
   std::string why_not;

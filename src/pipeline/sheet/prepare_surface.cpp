@@ -51,7 +51,7 @@ class Preparation {
     } else {
       close_leaks(p);
     }
-    if (has_no_room(p))
+    if (is_needle(p) && p.sheet.vertex_count() >= 2 * p.target_of_input.vertices)  // else the grid is too coarse
       thicken_needle(p);
     else if (is_open && is_crust(p))
       keep_sides_apart(p);
@@ -102,14 +102,6 @@ class Preparation {
   double thickness_vox(const Sheet& sheet) const {
     const double voxel = sheet.frame.voxel_size, area_vox = sheet_area_world(sheet) / (voxel * voxel);
     return double(six_volume_vox(sheet, context_)) / 3 / area_vox;
-  }
-
-  /// Whether the sheet is far thinner than a voxel all over, as that of a needle: it has no area for so many cells.
-  bool has_no_room(const PreparedSurface& p) const {
-    const double voxel = p.sheet.frame.voxel_size;
-    const int64_t cells = p.target_of_input.vertices;
-    return p.sheet.vertex_count() >= 2 * cells &&  // with fewer the grid is too coarse for anything
-           sheet_area_world(p.sheet) < kLeastCellVox * voxel * voxel * double(cells);
   }
 
   /// Until edges turn around it. The sheet's area, and so its edges, grow as it does.
