@@ -16,13 +16,14 @@ namespace isoshell {
 namespace {
 
 constexpr double kSeedDegrees = 40, kGrowthDegrees = 20;
-constexpr double kStraightOn = .5;       // cosine between an edge and the next one, to grow: 60 degrees
-constexpr int64_t kMostToGrow = 64;      // edges around a vertex: where more meet, none goes on from another
-constexpr double kMostBeside = .51;      // of a good chain; one side may turn as the edge does, when the other is flat
-constexpr double kLeastGoodShare = .75;  // of a component that has creases: CAD has .87 to 1, scans up to .61
-constexpr double kNearlyAll = .98;       // crisp parts have 1, a pool with a rim .72 to .95 when a drop falls into it
-constexpr size_t kParts = 12;            // in which chains are judged
-constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
+constexpr double kStraightOn = .5;        // cosine between an edge and the next one, to grow: 60 degrees
+constexpr int64_t kMostToGrow = 64;       // edges around a vertex: where more meet, none goes on from another
+constexpr double kMostBeside = .51;       // of a good chain; one side may turn, however much, when the other is flat
+constexpr double kMostBesideInCad = .75;  // of a crease where nearly all other chains are good: both sides are round
+constexpr double kLeastGoodShare = .75;   // of a component that has creases: CAD has .76 to 1, scans up to .56
+constexpr double kNearlyAll = .98;        // crisp parts have 1, a pool with a rim .72 to .95 when a drop falls into it
+constexpr size_t kParts = 12;             // in which chains are judged
+constexpr double kWalkInFaceSizes = 4;    // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
 Buffer<double> turns_at(const MeshEdges& edges, View<const WorldPoint> normals) {
@@ -93,20 +94,20 @@ std::vector<uint32_t> grow_creases(const FeatureMesh& mesh, const MeshEdges& edg
 struct Judged {
   uint32_t component = 0;
   double length_world = 0;
-  /// How much the surface turns beside the chain over how much at it, in roots of 1 - cosine, or a part of that which
-  /// is too much already, as it is before one has looked.
-  double beside = kMostBeside;
+  /// How much the surface turns beside the chain over how much at it, in roots of 1 - cosine, a side as much as the
+  /// edge at most; before one has looked, as much as the edge.
+  double beside = 1;
   double unseen = 0;  ///< the same of sides that are a single small triangle, as if that turned like the edge
-  bool is_good() const { return beside < kMostBeside; }
+  bool is_bad() const { return beside >= kMostBeside; }
   /// A triangle between creases says nothing of a surface.
   bool is_surely_good() const { return beside + unseen < kMostBeside; }
 };
 
-/// Of the chains of a component.
+/// Of the chains of a component. Those that are neither good nor bad say nothing, if they are not the most.
 struct Lengths {
   double all = 0, good = 0, bad = 0;
-  bool are_of_creases() const { return good >= kLeastGoodShare * all; }
-  /// Whatever the chains are that are neither good nor bad yet, and however sums are rounded.
+  bool are_of_creases() const { return good >= kLeastGoodShare * (good + bad) && 2 * good >= all; }
+  /// Whatever the chains are that one has not looked at yet, and however sums are rounded.
   bool are_surely_of_a_scan() const { return bad > 1.001 * (1 - kLeastGoodShare) * all; }
 };
 
@@ -115,7 +116,9 @@ struct JudgedChains {
   std::vector<Judged> chain;
   std::map<uint32_t, Lengths> of_component;
 
-  bool is_crease(size_t c) const { return chain[c].is_good() && of_component.at(chain[c].component).are_of_creases(); }
+  bool is_crease(size_t c) const {
+    return chain[c].beside < kMostBesideInCad && of_component.at(chain[c].component).are_of_creases();
+  }
   /// Whether nearly all that looks like a crease is one, over all components.
   bool are_nearly_all_creases() const {
     double all = 0, good = 0;
@@ -162,7 +165,7 @@ class Judge {
           look_beside_chain(ground, chains_[c], judged[c]);
       });
       for (size_t c = first; c < chains_.size(); c += kParts)
-        if (chains_[c].kind == CurveKind::crease && !judged[c].is_surely_good())
+        if (chains_[c].kind == CurveKind::crease && judged[c].is_bad())
           of_component[judged[c].component].bad += judged[c].length_world;
     }
     for (size_t c = 0; c < chains_.size(); ++c)
@@ -178,14 +181,15 @@ class Judge {
       return length(mesh_.vertices[chain.vertex[i + 1]] - mesh_.vertices[chain.vertex[i]]);
     };
     for (size_t i = 0; i < chain.edge.size(); ++i) at += size(i) * std::sqrt(turns_[chain.edge[i]]);
-    // Sums only grow: what is found to be no good chain on the way needs no more walks.
-    for (size_t i = 0; i < chain.edge.size() && beside / at < kMostBeside; ++i) {
+    // Sums only grow: what is found to be no crease on the way needs no more walks.
+    for (size_t i = 0; i < chain.edge.size() && beside / at < kMostBesideInCad; ++i) {
       const uint32_t e = chain.edge[i];
+      const double own = std::sqrt(turns_[e]);
       for (const uint32_t f : edges_.edges[e].face) {
         const BesideEdge seen = look_beside(ground, e, f, walk_length(f));
-        beside += size(i) / 2 * std::sqrt(seen.turn);
+        beside += size(i) / 2 * std::min(std::sqrt(seen.turn), own);
         const bool is_seen = seen.crossed > 0 || seen.walked_world >= reach_world_;
-        if (!is_seen) unseen += size(i) / 2 * std::sqrt(turns_[e]);
+        if (!is_seen) unseen += size(i) / 2 * own;
       }
     }
     judged.beside = beside / at;
