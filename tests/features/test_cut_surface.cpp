@@ -210,7 +210,7 @@ TEST_CASE("cut surface: what it can not cut, or seed, is an error that says why"
   FeatureMesh needles;
   constexpr uint32_t kCount = 20000;
   for (uint32_t i = 0; i <= kCount; ++i)
-    needles.vertices.insert(needles.vertices.end(), {{i * 1e-6, 0, 0}, {i * 1e-6, 9, 0}});
+    needles.vertices.insert(needles.vertices.end(), {{i * 1e-6, 0, i % 2 * 1e-6}, {i * 1e-6, 9, i % 2 * 1e-6}});
   for (uint32_t i = 0; i < 2 * kCount; i += 2)
     needles.triangles.insert(needles.triangles.end(), {{i, i + 2, i + 3}, {i, i + 3, i + 1}});
   CHECK(contains(cut(needles, network_of(needles, {}), 0.01), "long thin triangles"));

@@ -55,6 +55,29 @@ TEST_CASE("flat edges: a fan in a plane becomes Delaunay, of the same area", "[f
   }
 }
 
+TEST_CASE("flat edges: long thin strips become Delaunay to the end, however many flips that takes", "[features]") {
+  FineMesh mesh;  // strips of two fans, each from a corner at one end
+  constexpr uint32_t n = 200, strips = 3;
+  for (uint32_t s = 0; s < strips; ++s) {
+    const auto first = uint32_t(mesh.position.size());
+    for (const double y : {0., 20.})
+      for (uint32_t i = 0; i <= n; ++i) mesh.position.push_back({250. * i, 100. * s + y, 0});
+    for (uint32_t i = 1; i < n; ++i) mesh.triangles.push_back({first, first + i, first + i + 1});
+    const uint32_t above = first + n + 1, end = first + n;
+    for (uint32_t i = 0; i < n; ++i) mesh.triangles.push_back({end, above + i + 1, above + i});
+    mesh.triangles.push_back({first, end, above});
+    mesh.triangles.erase(
+        std::find(mesh.triangles.begin(), mesh.triangles.end(), std::array<uint32_t, 3>{first, end - 1, end}));
+    mesh.triangles.push_back({first, end - 1, end});
+  }
+  for (const auto& t : flip_flat_edges(mesh).triangles) {
+    double longest = 0;
+    for (size_t i = 0; i < 3; ++i)
+      longest = std::max(longest, std::abs(mesh.position[t[i]].x - mesh.position[t[(i + 1) % 3]].x));
+    CHECK(longest == 250);
+  }
+}
+
 TEST_CASE("flat edges: the order of triangles does not show", "[features]") {
   const FineMesh mesh = fan(31);
   FineMesh other = mesh;

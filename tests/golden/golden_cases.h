@@ -119,29 +119,29 @@ inline std::vector<RunCase> run_cases() {
   const auto inward = [] { return shapes::inside_out(shapes::box({0, 0, 0}, {3, 2, 1})); };
   RemeshOptions borders = keeping_borders(defaults(500));
   borders.closing_vox = 0;
-  return {
-      {"a part keeps its creases", still(block), defaults(400)},
-      {"a scan has none", still(scan), defaults(1200)},
-      {"borders are kept", still(half_torus), borders},
-      {"attributes are carried over and seams kept", still(painted_torus), defaults(500)},
-      {"a frame begins with the one before", [](int frame) { return input_of(twisted_torus(frame), "shape"); },
-       defaults(500), 2},
-      {"a border ends creases", still(open_box), keeping_borders(defaults(500))},
-      {"a dirty mesh is repaired", still(dirty_torus), defaults(800)},
-      {"solids that cross are united, with creases", still(crossing_boxes), defaults(800)},
-      {"walls between blocks go", still([] { return blocks(3); }), defaults(500)},
-      {"a part that looks inward is turned", still(inward), defaults(400)},
-      {"of two that overlap one looks inward", still(mixed_boxes), defaults(600)},
-      {"patches of a thin wall are simplified", still([] { return bent_plate(1.5, 0.01); }), defaults(100)},
-      {"patches of a thinner wall are simplified", still([] { return bent_plate(0.5, 0.004); }), defaults(100)},
-      {"a wall too thin for its count loses its creases", still([] { return bent_plate(0.5, 0.004); }), defaults(30)},
-      {"points without normals", points(points_of_torus(3000)), defaults(800)},
-      {"points of a sharp body", points(points_of_box({30, 20, 10})), defaults(600)},
-      {"grains of a volume of labels", labels(voronoi_grains(64, 20)), defaults(3000)},
-      {"labels whose walls are mended", labels(random_labels(38)), defaults(500)},
-      {"walls that make cells", still(box_with_walls), parted(defaults(800), "cells")},
-      {"parts that touch", still([] { return pin_in_a_plate(); }), parted(defaults(800), "components")},
-      {"faces with regions", still(labelled_cubes), defaults(500)}};
+  return {{"a part keeps its creases", still(block), defaults(400)},
+          {"a scan has none", still(scan), defaults(1200)},
+          {"borders are kept", still(half_torus), borders},
+          {"attributes are carried over and seams kept", still(painted_torus), defaults(500)},
+          {"a frame begins with the one before", [](int frame) { return input_of(twisted_torus(frame), "shape"); },
+           defaults(500), 2},
+          {"a border ends creases", still(open_box), keeping_borders(defaults(500))},
+          {"a dirty mesh is repaired", still(dirty_torus), defaults(800)},
+          {"solids that cross are united, with creases", still(crossing_boxes), defaults(800)},
+          {"walls between blocks go", still([] { return blocks(3); }), defaults(500)},
+          {"a part that looks inward is turned", still(inward), defaults(400)},
+          {"of two that overlap one looks inward", still(mixed_boxes), defaults(600)},
+          {"patches of a thin wall are simplified", still([] { return bent_plate(1.5, 0.01); }), defaults(100)},
+          {"patches of a thinner wall are simplified", still([] { return bent_plate(0.5, 0.004); }), defaults(100)},
+          {"a wall too thin for its count loses its least creases", still([] { return bent_plate(0.5, 0.004); }),
+           defaults(30)},
+          {"points without normals", points(points_of_torus(3000)), defaults(800)},
+          {"points of a sharp body", points(points_of_box({30, 20, 10})), defaults(600)},
+          {"grains of a volume of labels", labels(voronoi_grains(64, 20)), defaults(3000)},
+          {"labels whose walls are mended", labels(random_labels(38)), defaults(500)},
+          {"walls that make cells", still(box_with_walls), parted(defaults(800), "cells")},
+          {"parts that touch", still([] { return pin_in_a_plate(); }), parted(defaults(800), "components")},
+          {"faces with regions", still(labelled_cubes), defaults(500)}};
 }
 
 /// One block of text a case: counts with their meaning, then a digest per product.

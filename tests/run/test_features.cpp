@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
+#include "features/known_curves.h"
 #include "isoshell/advanced/digest.h"
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
@@ -192,6 +194,29 @@ TEST_CASE("features: more places on curves than vertices are no error", "[featur
   const RemeshResult result = remesh(cylinder(1, 2, 6), keeping_creases(20), context);
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   CHECK(result.mesh.vertices.size() == 20);
+}
+
+TEST_CASE("features: where vertices are too few for all creases the longest are kept, and the others named",
+          "[features]") {
+  std::set<std::array<int, 3>> plate;
+  for (int x = 0; x < 11; ++x)
+    for (int y = 0; y < 11; ++y) {
+      plate.insert({x, y, 0});
+      if (x % 2 == 1 && y % 2 == 1) plate.insert({x, y, 1});
+    }
+  const TriangleSoup soup = known_curves::cells(plate, 2);  // 140 of length around the plate and 25 x 12 on it
+  TestContext context;
+  const RemeshResult result = remesh(soup, keeping_creases(260), context);
+  const FeatureReport& features = result.report.features;
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+  CHECK(result.mesh.vertices.size() == 260);
+  CHECK(features.kept);
+  CHECK(features.vertices <= 200);
+  CHECK(features.kept_length_world > 60);
+  CHECK(features.kept_length_world < .9 * features.length_world);
+  CHECK_FALSE(features.lost.empty());
+  for (const LostCurve& curve : features.lost) CHECK_FALSE(curve.reason.empty());
+  CHECK(length_on(result.mesh, {0, 0, 0}, {11, 0, 0}, 1e-3) > 10);
 }
 
 TEST_CASE("features: few vertices on a fine grid are no error", "[features]") {

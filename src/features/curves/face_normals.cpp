@@ -3,14 +3,10 @@
 #include <algorithm>
 
 #include "core/parallel_ranges.h"
-#include "geometry/box.h"
+#include "features/mesh/remove_slivers.h"
 
 namespace isoshell {
 namespace {
-
-constexpr double kThinHeight = 1e-5;   // of the largest extent: what floats round is 100 times smaller
-constexpr double kThinRoundings = 16;  // a triangle as high turns by 5 degrees where its vertices are rounded
-constexpr int kThinRounds = 8;         // thin triangles in a row that get a normal
 
 constexpr WorldPoint kNoNormal{0, 0, 0};
 
@@ -23,41 +19,50 @@ double edge_length_sq(const FeatureMesh& mesh, const FeatureEdge& e) {
   return distance_sq(mesh.vertices[e.end[0]], mesh.vertices[e.end[1]]);
 }
 
-/// The normal on the other side of the longest edge that has one there.
+/// The normal on the other side of the longest edge; of any edges the longest one that has a normal there.
 WorldPoint neighbours_normal(const FeatureMesh& mesh, const MeshEdges& edges, View<const WorldPoint> normals,
-                             uint32_t face) {
+                             uint32_t face, bool of_any_edge) {
   WorldPoint best = kNoNormal;
   double longest_sq = 0;
   for (const uint32_t e : edges.of_triangle[face]) {
-    if (!edges.is_inner(e)) continue;
-    const WorldPoint& n = normals[edges.across(e, face)];
+    const WorldPoint n = edges.is_inner(e) ? normals[edges.across(e, face)] : kNoNormal;
     const double length_sq = edge_length_sq(mesh, edges.edges[e]);
-    if (!has_normal(n) || length_sq <= longest_sq) continue;
+    if ((of_any_edge && !has_normal(n)) || length_sq <= longest_sq) continue;
     longest_sq = length_sq;
     best = n;
   }
   return best;
 }
 
-/// Thin triangles take a neighbour's normal; a round only sees the normals of the rounds before.
+/// Thin triangles take the normal beside their longest edge, from triangle to triangle; where none is there, as in a
+/// ring of thin ones, that of another edge. A round only sees the normals of the rounds before.
 void borrow_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<uint32_t> thin,
                     View<WorldPoint> normals) {
-  for (int round = 0; round < kThinRounds && !thin.empty(); ++round) {
+  const auto lacks_normal = [&](uint32_t t) { return !has_normal(normals[t]); };
+  std::vector<uint32_t> next = thin;
+  for (bool of_any_edge = false;;) {
     std::vector<std::pair<uint32_t, WorldPoint>> found;
-    for (const uint32_t t : thin) found.push_back({t, neighbours_normal(mesh, edges, normals, t)});
-    thin.clear();
-    for (const auto& [t, n] : found) {
-      normals[t] = n;
-      if (!has_normal(n)) thin.push_back(t);
+    for (const uint32_t t : next) {
+      const WorldPoint n = neighbours_normal(mesh, edges, normals, t, of_any_edge);
+      if (has_normal(n)) found.push_back({t, n});
     }
+    if (found.empty() && of_any_edge) return;
+    next.clear();
+    for (const auto& [t, n] : found) normals[t] = n;
+    for (const auto& [t, n] : found)
+      for (const uint32_t e : edges.of_triangle[t])
+        if (edges.is_inner(e) && lacks_normal(edges.across(e, t))) next.push_back(edges.across(e, t));
+    of_any_edge = next.empty();
+    if (!of_any_edge) continue;
+    thin.erase(std::stable_partition(thin.begin(), thin.end(), lacks_normal), thin.end());
+    next = thin;
   }
 }
 
 }  // namespace
 
 Buffer<WorldPoint> face_normals(const FeatureMesh& mesh, const MeshEdges& edges) {
-  const double extent = mesh.vertices.empty() ? 0 : longest_side(box_of(mesh.vertices));
-  const double least_height = std::max(kThinHeight * extent, kThinRoundings * mesh.rounding_world);
+  const double least_height = least_height_world(mesh);
   Buffer<WorldPoint> normals(int64_t(mesh.triangles.size()));
   for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
     const auto& c = mesh.triangles[t];

@@ -69,8 +69,12 @@ std::vector<CurveEdge> find_curve_edges(const FeatureMesh& mesh, const MeshEdges
   if (!options.smooth.empty()) found = without_creases_at(std::move(found), inner_edges(edges, options.smooth));
   if (!options.lines.empty()) found = with_edges(found, inner_edges(edges, options.lines), CurveKind::line);
   if (!options.seams.empty()) found = with_edges(found, inner_edges(edges, options.seams), CurveKind::seam);
+  if (options.most_vertices == 0 && !options.interfaces.empty())
+    found = with_edges(found, inner_edges(edges, options.interfaces), CurveKind::line);
   if (options.mode != CreaseMode::off)
-    found = drop_small_creases(mesh, edges, std::move(found), options.edge_length_world, options.drops_small_patches);
+    found = drop_small_creases(mesh, edges, std::move(found), options.edge_length_world);
+  if (options.most_vertices > 0)
+    found = drop_least_creases(mesh, edges, std::move(found), options.edge_length_world, options.most_vertices);
   for (CurveEdge& c : found)
     if ((c.kind == CurveKind::seam || c.kind == CurveKind::line) && c.turn > 0) c.kind = CurveKind::crease;
   return found;
@@ -135,12 +139,10 @@ CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, C
   return find_curves(mesh, options, find_creases(mesh, options), report);
 }
 
-CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, FoundCreases found,
+CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, const FoundCreases& found,
                          CreaseReport* report) {
-  CreaseReport& creases = found.report;
   const MeshEdges& edges = found.edges;
-  const std::vector<EdgeChain> chains =
-      find_chains(edges, find_curve_edges(mesh, edges, std::move(found.curve_edges), options));
+  const std::vector<EdgeChain> chains = find_chains(edges, find_curve_edges(mesh, edges, found.curve_edges, options));
 
   std::vector<std::vector<NumberedCurve>> cut(chains.size());
   for_each_index(size_t(0), chains.size(),
@@ -158,9 +160,10 @@ CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, F
   }
   std::sort(network.corners.begin(), network.corners.end());
   network.corners.erase(std::unique(network.corners.begin(), network.corners.end()), network.corners.end());
+  if (!report) return network;
+  *report = found.report;
   for (const EdgeChain& chain : chains)
-    if (chain.kind == CurveKind::crease) creases.kept_length_world += length_of(mesh, chain);
-  if (report) *report = creases;
+    if (chain.kind == CurveKind::crease) report->kept_length_world += length_of(mesh, chain);
   return network;
 }
 

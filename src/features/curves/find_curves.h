@@ -23,14 +23,15 @@ struct CurveOptions {
   double edge_length_world = 0;  ///< h, the edge length that the result aims at; above 0
   EdgeList seams = {};           ///< ends of edges that are curves, too; others are passed over
   EdgeList lines = {};           ///< likewise
+  EdgeList interfaces = {};      ///< likewise, but only where any number of vertices may be on curves
   EdgeList creases = {};         ///< likewise; of mode given
   EdgeList smooth = {};          ///< ends of edges that are no creases, however sharp they are
   /// Of mode automatic: the frame before, where this one has other faces. What a simulation meshes anew has sharp edges
   /// here and there for a moment, so unless nearly all that looks like a crease is one, none come, and those that were
   /// there stay while they are the rule on the whole surface. Null where every crease may come.
   const PreviousFrame* before = nullptr;
-  bool drops_small_patches = false;  ///< patches with less than 6 h of border lose a crease, however
-                                     ///< sharp it is
+  double most_vertices = 0;  ///< on all curves, at edges of that length, if leaving creases out can do that: the least
+                             ///< go first, by turn times length; 0: any number
 };
 
 /// What was decided about creases.
@@ -58,7 +59,7 @@ FoundCreases find_creases(const FeatureMesh& mesh, const CurveOptions& options);
 /// the same corner); a loop from its smallest vertex along the smaller edge. Throws: usage.
 CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, CreaseReport* report = nullptr);
 /// The same from the creases that were found with these options.
-CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, FoundCreases found,
+CurveNetwork find_curves(const FeatureMesh& mesh, const CurveOptions& options, const FoundCreases& found,
                          CreaseReport* report = nullptr);
 
 }  // namespace isoshell

@@ -1,6 +1,7 @@
 #include "features/curves/small_creases.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/index_sets.h"
 #include "geometry/world_vector.h"
@@ -11,7 +12,6 @@ namespace {
 constexpr double kShortestLoose = 2;  // of h
 constexpr double kSmallPatch = 6;     // of h: its border
 constexpr double kSharedTurn = .5;    // 1 - cos 60 degrees: half of a crease of 120 degrees
-constexpr double kAnyTurn = 3;        // above all
 
 /// The edges of the chains that stay, ascending.
 template <class Stays>
@@ -71,10 +71,10 @@ class Patches {
 
 /// Every small patch gives up the weakest crease between it and another.
 std::vector<CurveEdge> drop_shared(const FeatureMesh& mesh, const MeshEdges& edges, std::vector<CurveEdge> all,
-                                   double edge_length_world, double most_turn) {
+                                   double edge_length_world) {
   constexpr size_t kNoChain = SIZE_MAX;
-  const auto may_go = [=](const EdgeChain& chain) {
-    return chain.kind == CurveKind::crease && chain.turn < most_turn && !chain.is_ring;
+  const auto may_go = [](const EdgeChain& chain) {
+    return chain.kind == CurveKind::crease && chain.turn < kSharedTurn && !chain.is_ring;
   };
   for (size_t before = all.size() + 1; all.size() < before;) {
     before = all.size();
@@ -105,15 +105,41 @@ std::vector<CurveEdge> drop_shared(const FeatureMesh& mesh, const MeshEdges& edg
 }  // namespace
 
 std::vector<CurveEdge> drop_small_creases(const FeatureMesh& mesh, const MeshEdges& edges,
-                                          std::vector<CurveEdge> curve_edges, double edge_length_world,
-                                          bool however_sharp) {
+                                          std::vector<CurveEdge> curve_edges, double edge_length_world) {
   for (size_t before = curve_edges.size() + 1; curve_edges.size() < before;) {
     before = curve_edges.size();
     curve_edges = drop_short(mesh, edges, std::move(curve_edges), edge_length_world);
-    curve_edges =
-        drop_shared(mesh, edges, std::move(curve_edges), edge_length_world, however_sharp ? kAnyTurn : kSharedTurn);
+    curve_edges = drop_shared(mesh, edges, std::move(curve_edges), edge_length_world);
   }
   return curve_edges;
+}
+
+std::vector<CurveEdge> drop_least_creases(const FeatureMesh& mesh, const MeshEdges& edges,
+                                          std::vector<CurveEdge> curve_edges, double edge_length_world,
+                                          double most_vertices) {
+  // What is left joins to longer chains, of fewer vertices, some of which end freely.
+  for (;;) {
+    const std::vector<EdgeChain> chains = find_chains(edges, curve_edges);
+    std::vector<double> vertices, value;
+    for (const EdgeChain& chain : chains) {
+      const double length_world = length_of(mesh, chain);
+      vertices.push_back(std::max(1., length_world / edge_length_world));
+      value.push_back(chain.turn * length_world);
+    }
+    double needed = std::accumulate(vertices.begin(), vertices.end(), 0.);
+    std::vector<size_t> least_first;
+    for (size_t c = 0; c < chains.size(); ++c)
+      if (chains[c].kind == CurveKind::crease) least_first.push_back(c);
+    std::stable_sort(least_first.begin(), least_first.end(), [&](size_t a, size_t b) { return value[a] < value[b]; });
+    std::vector<uint8_t> is_dropped(chains.size(), 0);
+    for (size_t i = 0; i < least_first.size() && needed > most_vertices; ++i) {
+      is_dropped[least_first[i]] = 1;
+      needed -= vertices[least_first[i]];
+    }
+    if (std::find(is_dropped.begin(), is_dropped.end(), 1) == is_dropped.end()) return curve_edges;
+    curve_edges = edges_of(chains, curve_edges, [&](size_t c) { return !is_dropped[c]; });
+    curve_edges = drop_small_creases(mesh, edges, std::move(curve_edges), edge_length_world);
+  }
 }
 
 }  // namespace isoshell

@@ -17,8 +17,8 @@ namespace isoshell {
 namespace {
 
 constexpr double kMostOffPlaneQ8 = 0.5;
-constexpr size_t kMostFlipsPerEdge = 8;  ///< far more than it takes; rounding may not make it endless
-constexpr double kRoundedAway = 1e-9;    ///< sums of two angles of 180 degrees, as in grids, are not told from it
+constexpr size_t kMostFlipsPerEdge = 256;  ///< strips take dozens; rounding may not make it endless
+constexpr double kRoundedAway = 1e-9;      ///< sums of two angles of 180 degrees, as in grids, are not told from it
 
 /// Half-edge 3 t + i runs from corner i of triangle t to the next one. Of the triangles beside an edge, a to b, c is
 /// the corner of the one that passes it so, d that of the other.

@@ -20,6 +20,9 @@
 namespace isoshell {
 namespace {
 
+constexpr double kTooManyOnCurves = 0.9;  ///< of the vertices: what is left is too few for the surface between them
+constexpr double kMostOnCurves = 0.5;     ///< where creases are left out
+
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
 double six_volumes(const FeatureMesh& mesh) {
   double sum = 0;
@@ -114,6 +117,7 @@ std::vector<LostCurve> left_out_of(const FeatureMesh& mesh, const CurveNetwork& 
 struct CutPlan {
   const FeatureMesh& mesh;
   const CurveOptions& curves;
+  const FoundCreases& creases;
   const LatticeFrame& frame;
   int64_t seeds;  ///< of a surface whose lengths do not decide
   CutOptions how = {};
@@ -132,50 +136,53 @@ SharedCut make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource s
   return cut;
 }
 
-/// The same without the creases around patches that are too small for the edges of the result. Null where there are
-/// none to leave out. Throws: as cut_surface.
+/// The same along as many creases as half of the vertices can hold. Throws: as cut_surface.
 SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSource source, RemeshReport& report,
                           Context& context) {
   const FeatureMesh& mesh = plan.mesh;
-  CurveOptions without_small = plan.curves;
-  without_small.drops_small_patches = true;
-  const CurveNetwork network = find_curves(mesh, without_small);
-  const std::vector<uint64_t> kept = edges_of(network);
-  if (kept == edges_of(all)) return nullptr;
+  CurveOptions within_budget = plan.curves;
+  within_budget.edge_length_world = plan.how.edge_length_world;
+  within_budget.most_vertices = kMostOnCurves * double(plan.seeds);
+  const CurveNetwork network = find_curves(mesh, within_budget, plan.creases);
   source.found = describe(mesh, network);
-  for (LostCurve& curve : left_out_of(mesh, all, kept)) source.left_out.push_back(std::move(curve));
-  const int64_t border_loops = report.features.border_loops;
-  report_found(mesh, network, border_loops > 0, report.features);
-  report.features.border_loops = border_loops;
+  for (LostCurve& curve : left_out_of(mesh, all, edges_of(network))) source.left_out.push_back(std::move(curve));
   return make_cut(plan, network, std::move(source), report.features, context);
 }
 
-/// Cuts a mesh along its curves, or along fewer where there is no room for all. Throws: NoRoom where there is none.
+/// How many vertices curves take at least at edges of that length: they are shorter where curves bend, or face others.
+double least_vertices_on(const CurveNetwork& network, const std::vector<LostCurve>& curves, double edge_length_world) {
+  double sum = double(network.corners.size());
+  for (const LostCurve& curve : curves) sum += std::max(0., curve.length_world / edge_length_world - 1);
+  return sum;
+}
+
+/// Cuts a mesh along its curves, or along fewer where these take too many of the vertices. Throws: NoRoom where there
+/// is no room for borders, seams and lines.
 SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
-                      CutSource source, int64_t seeds, const PreviousFrame* before, const PreparedSurface& p,
-                      RemeshReport& report, Context& context) {
-  CutPlan plan{mesh, curves, p.surface.frame, seeds};
+                      const FoundCreases& creases, CutSource source, int64_t seeds, const PreviousFrame* before,
+                      const PreparedSurface& p, RemeshReport& report, Context& context) {
+  CutPlan plan{mesh, curves, creases, p.surface.frame, seeds};
   report.grid.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
   CutOptions& how = plan.how;
   how = {edge_length_for(mesh, network, seeds), 0, requested_lengths(p)};
   if (before) how.before = before->carried;
   const bool lengths_decide = how.requested.vary() && field_decides(p.options);
   if (!lengths_decide && (how.requested.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
+  const double most = kTooManyOnCurves * double(seeds);
   SharedCut cut;
-  const auto why_not_all = [&] {
-    return failure_reason([&] {
+  const auto cut_along_all = [&] {
+    failure_reason([&] {
       cut = make_cut(plan, network, source, report.features, context);
       return std::string();
     });
   };
-  std::string refused = why_not_all();
+  if (how.vertices == 0 || least_vertices_on(network, source.found, how.edge_length_world) <= most) cut_along_all();
   if (!cut && !how.before.empty()) {  // curves may keep more seeds than there is room for
     how.before.clear();
-    refused = why_not_all();
+    cut_along_all();
   }
-  if (!cut) cut = cut_along_fewer(plan, network, std::move(source), report, context);
-  if (!cut) throw NoRoom("features", refused);
-  return cut;
+  if (cut && (how.vertices == 0 || double(report.features.vertices) <= most)) return cut;
+  return cut_along_fewer(plan, network, std::move(source), report, context);
 }
 
 /// Those of which less than half was laid onto the sheet.
@@ -217,13 +224,15 @@ SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double
   given.creases = laid.creases;
   given.seams = laid.seams;
   given.lines = laid.lines;
-  const CurveNetwork on_sheet = find_curves(laid.mesh, given);
+  const FoundCreases creases = find_creases(laid.mesh, given);
+  const CurveNetwork on_sheet = find_curves(laid.mesh, given, creases);
   if (on_sheet.curves.empty()) return nullptr;
   const std::vector<LostCurve> all = describe(mesh, network);
   CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.lengths_world(all.size())), true};
   name_as_laid(laid, on_sheet, source.found);
   report.features.on_sheet = against;
-  return cut_network(laid.mesh, on_sheet, given, std::move(source), p.target.vertices, before, p, report, context);
+  return cut_network(laid.mesh, on_sheet, given, creases, std::move(source), p.target.vertices, before, p, report,
+                     context);
 }
 
 }  // namespace
@@ -251,9 +260,8 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
   FeatureReport& found = report.features;
   std::vector<LostCurve> all;
   const std::string why = failure_reason([&]() -> std::string {
-    const CurveNetwork network = run_with_threads(context, [&] {
-      return find_curves(mesh, curves, known ? *std::move(known) : find_creases(mesh, curves), &creases);
-    });
+    if (!known) known = run_with_threads(context, [&] { return find_creases(mesh, curves); });
+    const CurveNetwork network = run_with_threads(context, [&] { return find_curves(mesh, curves, *known, &creases); });
     const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(p);
     report_found(mesh, network, is_open, found);
     warn_of_branches(mesh, network, report);
@@ -270,7 +278,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
     found.border_loops = apart.border_loops;
     CutSource source{all, all, {}};
     if (!is_open) source.input = std::make_shared<CutInput>(CutInput{mesh, network, curves.edge_length_world});
-    p.cut = cut_network(mesh, network, curves, std::move(source), vertices_of(p, is_open) - apart.more_places,
+    p.cut = cut_network(mesh, network, curves, *known, std::move(source), vertices_of(p, is_open) - apart.more_places,
                         p.previous.get(), p, report, context);
     return "";
   });

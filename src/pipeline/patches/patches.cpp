@@ -11,6 +11,8 @@
 #include "features/curves/find_curves.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/edge_subdivision.h"
+#include "features/mesh/remove_slivers.h"
+#include "geometry/half_edges.h"
 #include "geometry/triangle_grid.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/to_host.h"
@@ -109,12 +111,6 @@ Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double 
   });
 }
 
-/// What the search found that began with the surface, or the surface alone.
-SearchedSurface searched_surface(const PreparedSurface& p, const Context& context) {
-  if (p.creases && p.creases->has_result()) return p.creases->result();
-  return {feature_mesh_of(*OnHost(p.surface), context), {}};
-}
-
 /// The mesh's vertices where the ends of edges were snapped to; of edges that are no longer there none.
 EdgeList vertices_of(const std::vector<std::array<WorldPoint, 2>>& edges, const FeatureMesh& mesh,
                      const LatticeFrame& frame) {
@@ -129,6 +125,23 @@ EdgeList vertices_of(const std::vector<std::array<WorldPoint, 2>>& edges, const 
     if (vertex[0] != kNone && vertex[1] != kNone && vertex[0] != vertex[1]) found.push_back(vertex);
   }
   return found;
+}
+
+/// What the search found that began with the surface, or the surface alone. The edges `kept` are still there.
+SearchedSurface searched_surface(const PreparedSurface& p, const std::vector<std::array<WorldPoint, 2>>& kept,
+                                 const Context& context) {
+  if (p.creases && p.creases->has_result()) {
+    SearchedSurface searched = p.creases->result();
+    if (kept.empty() || !searched.had_slivers) return searched;
+  }
+  SearchedSurface alone{feature_mesh_of(*OnHost(p.surface), context), false, {}};
+  run_with_threads(context, [&] {
+    std::vector<uint64_t> keys;
+    for (const auto& [u, v] : vertices_of(kept, alone.mesh, p.surface.frame)) keys.push_back(edge_key(u, v));
+    std::sort(keys.begin(), keys.end());
+    alone.had_slivers = remove_slivers(alone.mesh, keys);
+  });
+  return alone;
 }
 
 /// Forgets which curves were lost beside seams, from the first on: they have another try.
@@ -212,18 +225,20 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, RemeshRepor
   const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !may_keep_borders(p);
   if (may_be_uncut) relax_meanwhile(p, report, context);
   timed(report, "features", context, [&] {
-    SearchedSurface searched = searched_surface(p, context);
+    std::vector<std::array<WorldPoint, 2>> kept = seams.edges;
+    kept.insert(kept.end(), source.interfaces.begin(), source.interfaces.end());
+    SearchedSurface searched = searched_surface(p, kept, context);
     FeatureMesh& mesh = searched.mesh;
     CurveOptions curves = curve_options(options, p.previous.get(), edge_world);
     curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);
-    if (curves.mode != CreaseMode::off) curves.lines = vertices_of(source.interfaces, mesh, p.surface.frame);
+    if (curves.mode != CreaseMode::off) curves.interfaces = vertices_of(source.interfaces, mesh, p.surface.frame);
     if (lines) {
-      MeshWithLines embedded = with_given_lines(std::move(mesh), *lines, {curves.seams, curves.lines}, edge_world,
+      MeshWithLines embedded = with_given_lines(std::move(mesh), *lines, {curves.seams, curves.interfaces}, edge_world,
                                                 p.surface.frame.voxel_size, report);
       mesh = std::move(embedded.mesh);
       curves.seams = std::move(embedded.followed[0]);
-      curves.lines = std::move(embedded.followed[1]);
-      curves.lines.insert(curves.lines.end(), embedded.edges.begin(), embedded.edges.end());
+      curves.interfaces = std::move(embedded.followed[1]);
+      curves.lines = std::move(embedded.edges);
     }
     const size_t lost_lines = report.features.lost.size();
     if (cut_along(mesh, curves, std::move(searched.creases), p, report, context) || curves.seams.empty()) {

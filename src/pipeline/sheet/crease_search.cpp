@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/watched.h"
+#include "features/mesh/remove_slivers.h"
 #include "features/mesh/weld_for_features.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
@@ -79,7 +80,8 @@ CreaseSearch::CreaseSearch(const LatticeSurface& surface, const CurveOptions& op
   const SurfaceOnDevice on_device(surface);
   auto search = [this, copied = std::move(copied), on_device, options, &context]() mutable {
     const LatticeSurface here = on_device.copy(std::move(copied));
-    SearchedSurface found{feature_mesh_of(here, context), {}};
+    SearchedSurface found{feature_mesh_of(here, context), false, {}};
+    found.had_slivers = run_with_threads(context, [&] { return remove_slivers(found.mesh, {}); });
     check_cancel(context, "features");
     found.creases = run_with_threads(context, [&] { return creases_unless_refused(found.mesh, options); });
     has_found_curves_ = found.creases && !found.creases->curve_edges.empty();

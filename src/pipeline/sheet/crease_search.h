@@ -21,7 +21,8 @@ FeatureMesh feature_mesh_of(const LatticeSurface& surface, const Context& contex
 
 /// What there is to know before seams and lines are.
 struct SearchedSurface {
-  FeatureMesh mesh;
+  FeatureMesh mesh;                     ///< without slivers
+  bool had_slivers = false;             ///< so that edges of the surface may be gone
   std::optional<FoundCreases> creases;  ///< none where find_creases refuses the mesh, and will say so again
 };
 
