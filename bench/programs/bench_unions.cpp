@@ -1,7 +1,8 @@
-// The union of a file's components alone: JSON with its time, faces, volume, genus, and what it reports.
+// The union of a file's components alone: JSON with its CPU time, faces, volume, genus, and what it reports.
 // Usage: bench_unions MESH [OUT.ply [GAP]]
-#include <chrono>
+#include <algorithm>
 #include <cstdlib>
+#include <ctime>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -19,11 +20,16 @@ int main(int argc, char** argv) {
   Context context;
   context.threads = 1;
   UnionReport report;
-  const auto begin = std::chrono::steady_clock::now();
   UnionOptions options;
   options.sheet_gap_world = argc > 3 ? std::atof(argv[3]) : 0;
-  const UnitedSoup united = boolean_union(soup, options, report, context);
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  UnitedSoup united;
+  std::clock_t least = 0;
+  for (int run = 0; run < 5; ++run) {  // others on the machine only make it longer
+    const std::clock_t begin = std::clock();
+    united = boolean_union(soup, options, report, context);
+    const std::clock_t taken = std::clock() - begin;
+    least = run == 0 ? taken : std::min(least, taken);
+  }
   const InputTopology topology = measure_topology(united.soup, context).topology;
   double volume6 = 0;
   for (const auto& t : united.soup.triangles) {
@@ -31,7 +37,7 @@ int main(int argc, char** argv) {
     volume6 += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
   }
   if (argc > 2) write_mesh(argv[2], {united.soup.vertices, united.soup.triangles});
-  std::cout << nlohmann::json{{"seconds", taken.count()},
+  std::cout << nlohmann::json{{"cpu_seconds", double(least) / CLOCKS_PER_SEC},
                               {"faces_before", soup.triangles.size()},
                               {"faces", united.soup.triangles.size()},
                               {"volume", volume6 / 6},
