@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
@@ -34,6 +35,9 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
   std::vector<BoxQ8> boxes(unsettled.size());
   for (size_t i = 0; i < boxes.size(); ++i) boxes[i] = reach_of(faces, unsettled[i]);
   const BoxTree tree(boxes);
+  std::vector<FacePlanes> planes(unsettled.size());
+  for_each_index(size_t(0), planes.size(), [&](size_t i) { planes[i] = planes_of(faces, unsettled[i]); });
+  const auto with_planes = [&](uint32_t i) { return FaceAndPlanes{unsettled[i], planes[i]}; };
   const size_t first_tasks = tasks_of(tree.groups(), kGroupsOfTask);
   const size_t second_tasks = unsettled.size() == faces.face.size() ? 0 : tasks_of(faces.face.size(), kFacesOfTask);
   std::vector<Contacts> parts(first_tasks + second_tasks);
@@ -47,7 +51,7 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
       for (size_t g = p * kGroupsOfTask; g < std::min(tree.groups(), (p + 1) * kGroupsOfTask); ++g) {
         if (is_too_much(p)) return;
         const int64_t before = part.work();
-        tree.for_pairs_of(g, [&](uint32_t s, uint32_t t) { meet_faces(faces, unsettled[s], unsettled[t], part); });
+        tree.for_pairs_of(g, [&](uint32_t s, uint32_t t) { meet_faces(faces, with_planes(s), with_planes(t), part); });
         work.fetch_add(part.work() - before, std::memory_order_relaxed);
       }
       return;
@@ -57,8 +61,10 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
       if (faces.is_unsettled[f]) continue;
       if (is_too_much(p)) return;
       const int64_t before = part.work();
+      std::optional<FacePlanes> own;
       tree.for_all_meeting(reach_of(faces, uint32_t(f)), [&](uint32_t s) {
-        meet_faces(faces, uint32_t(f), unsettled[s], part);
+        if (!own) own = planes_of(faces, uint32_t(f));
+        meet_faces(faces, {uint32_t(f), *own}, with_planes(s), part);
         return true;
       });
       work.fetch_add(part.work() - before, std::memory_order_relaxed);

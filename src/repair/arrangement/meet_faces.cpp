@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/box.h"
 #include "geometry/segment.h"
 #include "voxel/intersect.h"
 
@@ -18,6 +19,62 @@ StepPoint rounded(const WorldPoint& p) {
   return {int32_t(std::floor(p.x + .5)), int32_t(std::floor(p.y + .5)), int32_t(std::floor(p.z + .5))};
 }
 
+HeightPlane plane_through(const WorldPoint& p, const WorldPoint& normal) {
+  const double size = length(normal);
+  if (!(size > 0)) return {};
+  const WorldPoint unit = (1 / size) * normal;
+  return {unit, dot(unit, p)};
+}
+
+/// Whether planes of two faces tell that they are farther than `reach` from each other, but at corners that they share.
+class Separation {
+ public:
+  Separation(const LatticeFaces& faces, const Corners& s, const Corners& t) : reach_(faces.reach_steps) {
+    const std::array<const Corners*, 2> corner = {&s, &t};
+    for (size_t k = 0; k < 2; ++k)
+      for (size_t i = 0; i < 3; ++i) at_[k][i] = as_world(faces.point[(*corner[k])[i]]);
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 3; ++j)
+        if (s[i] == t[j]) same_[0][i] = j, same_[1][j] = i, ++shared_;
+  }
+
+  bool has_all_shared() const { return shared_ == 3; }
+  bool is_known(const FacePlanes& s, const FacePlanes& t) const {
+    return is_beside(0, t) || is_beside(1, s) || is_beyond_edge(0, t) || is_beyond_edge(1, s);
+  }
+
+ private:
+  static constexpr size_t kNotShared = 3;
+
+  /// Whether the corners of k that are not shared are on one side of the other's plane and out of reach.
+  bool is_beside(size_t k, const FacePlanes& other) const {
+    bool is_above = true, is_below = true;
+    for (size_t i = 0; i < 3; ++i) {
+      if (same_[k][i] != kNotShared) continue;
+      const double h = other.face.height(at_[k][i]);
+      is_above = is_above && h > reach_;
+      is_below = is_below && h < -reach_;
+    }
+    return is_above || is_below;
+  }
+
+  /// Whether the corners of k are beyond an edge of the other and out of reach, or its ends.
+  bool is_beyond_edge(size_t k, const FacePlanes& other) const {
+    for (size_t e = 0; e < 3; ++e) {
+      const auto is_beyond = [&](size_t i) {
+        return same_[k][i] == e || same_[k][i] == (e + 1) % 3 || other.edge[e].height(at_[k][i]) > reach_;
+      };
+      if (is_beyond(0) && is_beyond(1) && is_beyond(2)) return true;
+    }
+    return false;
+  }
+
+  double reach_;
+  std::array<std::array<WorldPoint, 3>, 2> at_;
+  std::array<std::array<size_t, 3>, 2> same_ = {{{3, 3, 3}, {3, 3, 3}}};  ///< the other's corner that this one is
+  int shared_ = 0;
+};
+
 /// Where a corner lies on a face.
 enum Place : int { kEdge0, kEdge1, kEdge2, kInside, kApart, kShared };
 
@@ -25,18 +82,18 @@ enum class Meeting { apart, at_end, inside };
 
 class FacePair {
  public:
-  FacePair(const LatticeFaces& faces, uint32_t f, uint32_t g, Contacts& to)
+  FacePair(const LatticeFaces& faces, const FaceAndPlanes& f, const FaceAndPlanes& g, Contacts& to)
       : faces_(faces),
         to_(to),
         reach_sq_(square(faces.reach_steps)),
         weld_sq_(square(faces.weld_steps())),
-        number_{f, g},
-        corner_{faces.face[f], faces.face[g]} {
+        number_{f.number, g.number},
+        corner_{faces.face[f.number], faces.face[g.number]},
+        plane_{f.planes.face, g.planes.face} {
     for (size_t s = 0; s < 2; ++s) normal_[s] = normal_of(at(corner_[s][0]), at(corner_[s][1]), at(corner_[s][2]));
   }
 
   void meet() {
-    if (has_all_shared() || is_beside(0) || is_beside(1) || is_beyond_edge(0) || is_beyond_edge(1)) return;
     if (faces_.leaves_near && !triangles_intersect(corners_of(0), corners_of(1))) return;
     if (find_close_corners()) return;
     for (size_t s = 0; s < 2; ++s)
@@ -53,44 +110,6 @@ class FacePair {
   CornersOfTriangle corners_of(size_t s) const {
     const auto& [a, b, c] = corner_[s];
     return {{a, b, c}, {at(a), at(b), at(c)}};
-  }
-
-  bool has_all_shared() const {
-    return has_corner(corner_[1], corner_[0][0]) && has_corner(corner_[1], corner_[0][1]) &&
-           has_corner(corner_[1], corner_[0][2]);
-  }
-
-  double height(size_t of, uint32_t v) const {
-    const Vec64& n = normal_[of];
-    const WorldPoint normal = as_world(n);
-    const double size = length(normal);
-    return size > 0 ? dot(normal, as_world(difference(at(v), at(corner_[of][0])))) / size : 0;
-  }
-  /// Whether the corners of s that are not shared are on one side of the other's plane and out of reach.
-  bool is_beside(size_t s) const {
-    int side = 0;
-    for (const uint32_t v : corner_[s]) {
-      if (has_corner(corner_[1 - s], v)) continue;
-      const double h = height(1 - s, v);
-      if (std::abs(h) <= faces_.reach_steps || (h > 0 ? side < 0 : side > 0)) return false;
-      side = h > 0 ? 1 : -1;
-    }
-    return true;
-  }
-
-  /// Whether the corners of s are beyond an edge of the other and out of reach, or its ends.
-  bool is_beyond_edge(size_t s) const {
-    const Corners& other = corner_[1 - s];
-    for (size_t i = 0; i < 3; ++i) {
-      const uint32_t a = other[i], b = other[(i + 1) % 3];
-      const WorldPoint out = cross(as_world(difference(at(b), at(a))), as_world(normal_[1 - s]));
-      const double reach = faces_.reach_steps * length(out);
-      const bool is_beyond = std::all_of(corner_[s].begin(), corner_[s].end(), [&](uint32_t v) {
-        return v == a || v == b || dot(out, as_world(difference(at(v), at(a)))) > reach;
-      });
-      if (is_beyond) return true;
-    }
-    return false;
   }
 
   bool find_close_corners() {
@@ -114,7 +133,7 @@ class FacePair {
     const uint32_t v = corner_[s][i];
     const Corners& other = corner_[1 - s];
     if (has_corner(other, v)) return kShared;
-    if (std::abs(height(1 - s, v)) > faces_.reach_steps) return kApart;
+    if (std::abs(plane_[1 - s].height(as_world(at(v)))) > faces_.reach_steps) return kApart;
     const WorldPoint p = as_world(at(v)), n = as_world(normal_[1 - s]);
     int nearest = kApart;
     double nearest_sq = reach_sq_;
@@ -167,9 +186,17 @@ class FacePair {
   }
 
   void add_edges() {
+    std::array<std::array<BoxQ8, 3>, 2> box;
+    for (size_t s = 0; s < 2; ++s)
+      for (size_t i = 0; i < 3; ++i) {
+        const StepPoint &a = at(corner_[s][i]), &b = at(corner_[s][(i + 1) % 3]);
+        box[s][i] = {smallest_of(a, b), largest_of(a, b)};
+        if (s == 0) box[s][i] = widened(box[s][i], int32_t(faces_.reach_steps) + 1);
+      }
     const bool do_meet = !faces_.leaves_near_edges || triangles_intersect(corners_of(0), corners_of(1));
     for (size_t i = 0; i < 3; ++i)
       for (size_t k = 0; k < 3; ++k) {
+        if (!boxes_meet(box[0][i], box[1][k])) continue;
         Ends d = edge_of(corner_[0], i), e = edge_of(corner_[1], k);
         if (d[0] == e[0] || d[0] == e[1] || d[1] == e[0] || d[1] == e[1]) continue;
         if (e < d) std::swap(d, e);
@@ -208,6 +235,7 @@ class FacePair {
   double reach_sq_, weld_sq_;
   std::array<uint32_t, 2> number_;
   std::array<Corners, 2> corner_;
+  std::array<HeightPlane, 2> plane_;
   std::array<Vec64, 2> normal_;
   std::array<std::array<int, 3>, 2> place_{};
   std::array<std::array<bool, 3>, 2> is_met_{};
@@ -215,9 +243,26 @@ class FacePair {
 
 }  // namespace
 
-void meet_faces(const LatticeFaces& faces, uint32_t f, uint32_t g, Contacts& to) {
+FacePlanes planes_of(const LatticeFaces& faces, uint32_t f) {
+  const Corners& corner = faces.face[f];
+  const StepPoint &a = faces.point[corner[0]], &b = faces.point[corner[1]], &c = faces.point[corner[2]];
+  FacePlanes planes;
+  planes.face = plane_through(as_world(a), as_world(normal_of(a, b, c)));
+  for (size_t i = 0; i < 3; ++i) {
+    const WorldPoint from = as_world(faces.point[corner[i]]), to = as_world(faces.point[corner[(i + 1) % 3]]);
+    planes.edge[i] = plane_through(from, cross(to - from, planes.face.normal));
+  }
+  return planes;
+}
+
+void meet_faces(const LatticeFaces& faces, const FaceAndPlanes& f, const FaceAndPlanes& g, Contacts& to) {
   ++to.pairs;
-  FacePair(faces, std::min(f, g), std::max(f, g), to).meet();
+  const Separation separation(faces, faces.face[f.number], faces.face[g.number]);
+  if (separation.has_all_shared() || separation.is_known(f.planes, g.planes)) return;
+  if (f.number < g.number)
+    FacePair(faces, f, g, to).meet();
+  else
+    FacePair(faces, g, f, to).meet();
 }
 
 bool meet_itself(const LatticeFaces& faces, uint32_t f, Contacts& to) {
