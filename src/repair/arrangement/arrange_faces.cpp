@@ -43,6 +43,11 @@ LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, con
   return faces;
 }
 
+BoxQ8 box_of_face(const LatticeFaces& faces, size_t f) {
+  const Corners& c = faces.face[f];
+  return box_of(faces.point[c[0]], faces.point[c[1]], faces.point[c[2]]);
+}
+
 bool is_of_first(const LatticeFaces& faces, size_t f, size_t first_of_second) {
   return faces.source[f] < first_of_second;
 }
@@ -50,10 +55,7 @@ bool is_of_first(const LatticeFaces& faces, size_t f, size_t first_of_second) {
 /// Of two groups the faces whose boxes meet some of the other one are unsettled, and no others. Result: whether any
 /// are.
 bool unsettle_near(LatticeFaces& faces, size_t first_of_second) {
-  const auto box = [&](size_t f) {
-    const Corners& c = faces.face[f];
-    return widened(box_of(faces.point[c[0]], faces.point[c[1]], faces.point[c[2]]), int32_t(faces.weld_steps()));
-  };
+  const auto box = [&](size_t f) { return widened(box_of_face(faces, f), int32_t(faces.weld_steps())); };
   std::fill(faces.is_unsettled.begin(), faces.is_unsettled.end(), uint8_t(0));
   std::array<std::optional<BoxQ8>, 2> around;
   for (size_t f = 0; f < faces.face.size(); ++f) {
@@ -77,19 +79,24 @@ bool unsettle_near(LatticeFaces& faces, size_t first_of_second) {
   return is_any;
 }
 
-/// Faces that meet outside of what they share are unsettled then. One place of them.
-std::optional<StepPoint> find_crossing(LatticeFaces& faces, const Context& context) {
+/// Faces that are settled though they meet outside of what they share are unsettled then.
+void unsettle_crossing(LatticeFaces& faces, const Context& context) {
   std::vector<TriangleIndices> triangles;
-  triangles.reserve(faces.face.size());
-  for (const Corners& c : faces.face) triangles.push_back({c[0], c[1], c[2]});
-  const View<const StepPoint> points{faces.point.data(), int64_t(faces.point.size())};
-  const View<const TriangleIndices> view{triangles.data(), int64_t(triangles.size())};
-  const auto pairs = crossing_pairs(points, view, {}, context.cancel);
+  std::vector<uint32_t> number;
+  for (uint32_t f = 0; f < faces.face.size(); ++f) {
+    if (faces.is_unsettled[f]) continue;
+    const auto& [a, b, c] = faces.face[f];
+    triangles.push_back({a, b, c});
+    number.push_back(f);
+  }
+  for (const auto& pair : crossing_pairs({faces.point.data(), int64_t(faces.point.size())},
+                                         {triangles.data(), int64_t(triangles.size())}, {}, context.cancel))
+    for (const uint32_t t : pair) faces.is_unsettled[number[t]] = 1;
   check_cancel(context, "regions");
-  if (pairs.empty()) return {};
-  for (const auto& pair : pairs)
-    for (const uint32_t f : pair) faces.is_unsettled[f] = 1;
-  return common_box(points, view, pairs.front()).min;
+}
+
+StepPoint place_of(const LatticeFaces& faces, const std::array<uint32_t, 2>& pair) {
+  return largest_of(box_of_face(faces, pair[0]).min, box_of_face(faces, pair[1]).min);
 }
 
 ArrangedFaces result_of(LatticeFaces faces, const TriangleSoup& soup, const WeldedVertices& welded,
@@ -138,12 +145,12 @@ std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, Step
     if (!contacts.close.empty()) {
       weld_close(faces, contacts);
     } else if (!contacts.found.empty()) {
-      cut_at_contacts(faces, std::move(contacts.found), context);
+      cut_at_contacts(faces, std::move(contacts), context);
+    } else if (!contacts.crossing.empty()) {
+      unsettle_named(faces, contacts);
+      failed_at = place_of(faces, contacts.crossing.front());
     } else {
-      std::fill(faces.is_unsettled.begin(), faces.is_unsettled.end(), uint8_t(0));
-      const std::optional<StepPoint> crossing = find_crossing(faces, context);
-      if (!crossing) return faces;
-      failed_at = *crossing;
+      return faces;
     }
   }
   return {};
@@ -159,6 +166,7 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
     apart.is_near = false;
     return apart;
   }
+  unsettle_crossing(whole, context);
   int64_t work_left = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
   for (const double reach : kReaches) {
     if (work_left < 0) return {};

@@ -37,7 +37,6 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
   const BoxTree tree(boxes);
   std::vector<FacePlanes> planes(unsettled.size());
   for_each_index(size_t(0), planes.size(), [&](size_t i) { planes[i] = planes_of(faces, unsettled[i]); });
-  const auto with_planes = [&](uint32_t i) { return FaceAndPlanes{unsettled[i], planes[i]}; };
   const size_t first_tasks = tasks_of(tree.groups(), kGroupsOfTask);
   const size_t second_tasks = unsettled.size() == faces.face.size() ? 0 : tasks_of(faces.face.size(), kFacesOfTask);
   std::vector<Contacts> parts(first_tasks + second_tasks);
@@ -51,7 +50,7 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
       for (size_t g = p * kGroupsOfTask; g < std::min(tree.groups(), (p + 1) * kGroupsOfTask); ++g) {
         if (is_too_much(p)) return;
         const int64_t before = part.work();
-        tree.for_pairs_of(g, [&](uint32_t s, uint32_t t) { meet_faces(faces, with_planes(s), with_planes(t), part); });
+        tree.for_pairs_of(g, [&](uint32_t s, uint32_t t) { meet_faces(faces, planes[s], planes[t], part); });
         work.fetch_add(part.work() - before, std::memory_order_relaxed);
       }
       return;
@@ -64,7 +63,7 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
       std::optional<FacePlanes> own;
       tree.for_all_meeting(reach_of(faces, uint32_t(f)), [&](uint32_t s) {
         if (!own) own = planes_of(faces, uint32_t(f));
-        meet_faces(faces, {uint32_t(f), *own}, with_planes(s), part);
+        meet_faces(faces, *own, planes[s], part);
         return true;
       });
       work.fetch_add(part.work() - before, std::memory_order_relaxed);
@@ -78,6 +77,7 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
     all.found.insert(all.found.end(), part.found.begin(), part.found.end());
     all.close.insert(all.close.end(), part.close.begin(), part.close.end());
     all.near_close.insert(all.near_close.end(), part.near_close.begin(), part.near_close.end());
+    all.crossing.insert(all.crossing.end(), part.crossing.begin(), part.crossing.end());
     all.pairs += part.pairs;
   }
   return all;

@@ -16,14 +16,14 @@ namespace {
 
 class Cutter {
  public:
-  Cutter(LatticeFaces& faces, std::vector<Contact> contacts, const Context& context)
+  Cutter(LatticeFaces& faces, Contacts contacts, const Context& context)
       : faces_(faces), contacts_(std::move(contacts)), context_(context) {}
 
   void cut() {
-    number_new_points(faces_, contacts_);
-    spread_over_low_faces(faces_, contacts_);
-    ContactPoints points(faces_, contacts_);
-    const std::vector<FaceLine> lines = shared_lines(faces_, contacts_, points);
+    number_new_points(faces_, contacts_.found);
+    spread_over_low_faces(faces_, contacts_.found);
+    ContactPoints points(faces_, contacts_.found);
+    const std::vector<FaceLine> lines = shared_lines(faces_, contacts_.found, points);
     const std::vector<uint32_t> touched = points.touched_faces();
     std::vector<std::vector<Corners>> pieces(touched.size());
     for_each_index(size_t(0), touched.size(), [&](size_t i) {
@@ -31,9 +31,7 @@ class Cutter {
       pieces[i] = cut_face(faces_.point, cut_of(touched[i], points, lines));
     });
     // What is not cut though it has a contact is looked at again.
-    std::fill(faces_.is_unsettled.begin(), faces_.is_unsettled.end(), uint8_t(0));
-    for (const Contact& c : contacts_)
-      for (const uint32_t f : c.pair) faces_.is_unsettled[f] = 1;
+    unsettle_named(faces_, contacts_);
     replace(touched, pieces);
   }
 
@@ -74,13 +72,13 @@ class Cutter {
   }
 
   LatticeFaces& faces_;
-  std::vector<Contact> contacts_;
+  Contacts contacts_;
   const Context& context_;
 };
 
 }  // namespace
 
-void cut_at_contacts(LatticeFaces& faces, std::vector<Contact> contacts, const Context& context) {
+void cut_at_contacts(LatticeFaces& faces, Contacts contacts, const Context& context) {
   Cutter(faces, std::move(contacts), context).cut();
 }
 

@@ -48,9 +48,10 @@ struct Contact {
 
 struct Contacts {
   std::vector<Contact> found;
-  std::vector<Ends> close;           ///< points that are to be one
-  std::vector<uint32_t> near_close;  ///< faces at those
-  int64_t pairs = 0;                 ///< of faces that were looked at
+  std::vector<Ends> close;                        ///< points that are to be one
+  std::vector<uint32_t> near_close;               ///< faces at those
+  std::vector<std::array<uint32_t, 2>> crossing;  ///< faces that intersect though they have no contact
+  int64_t pairs = 0;                              ///< of faces that were looked at
 
   /// A contact takes as long as many pairs, and memory.
   int64_t work() const { return pairs + 16 * int64_t(found.size()); }

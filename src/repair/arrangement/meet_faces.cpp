@@ -26,52 +26,104 @@ HeightPlane plane_through(const WorldPoint& p, const WorldPoint& normal) {
   return {unit, dot(unit, p)};
 }
 
-/// Whether planes of two faces tell that they are farther than `reach` from each other, but at corners that they share.
+/// A range along a direction; none at first.
+struct Range {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+
+  void add(double x) { least = std::min(least, x), most = std::max(most, x); }
+  bool is_apart(const Range& o, double by) const { return least > o.most + by || o.least > most + by; }
+};
+
+/// Whether planes tell that two faces are farther than `reach` from each other, but at corners that they share.
 class Separation {
  public:
-  Separation(const LatticeFaces& faces, const Corners& s, const Corners& t) : reach_(faces.reach_steps) {
-    const std::array<const Corners*, 2> corner = {&s, &t};
-    for (size_t k = 0; k < 2; ++k)
-      for (size_t i = 0; i < 3; ++i) at_[k][i] = as_world(faces.point[(*corner[k])[i]]);
-    for (size_t i = 0; i < 3; ++i)
-      for (size_t j = 0; j < 3; ++j)
-        if (s[i] == t[j]) same_[0][i] = j, same_[1][j] = i, ++shared_;
-  }
+  Separation(const FacePlanes& s, const FacePlanes& t, const LatticeFaces& faces)
+      : face_{&s, &t}, reach_(faces.reach_steps), weld_(faces.weld_steps()) {}
 
-  bool has_all_shared() const { return shared_ == 3; }
-  bool is_known(const FacePlanes& s, const FacePlanes& t) const {
-    return is_beside(0, t) || is_beside(1, s) || is_beyond_edge(0, t) || is_beyond_edge(1, s);
+  bool is_known() {
+    if (is_beside(0) || is_beside(1)) return true;  // most are, and share nothing
+    find_shared();
+    if (shared_ > 0 && (shared_ == 3 || is_beside_but_shared(0) || is_beside_but_shared(1))) return true;
+    return are_apart_along_common_line() || is_beyond_edge(0) || is_beyond_edge(1);
   }
 
  private:
   static constexpr size_t kNotShared = 3;
+  static constexpr double kNearlyParallel = 1e-12;  // ranges along the line say nothing then
 
-  /// Whether the corners of k that are not shared are on one side of the other's plane and out of reach.
-  bool is_beside(size_t k, const FacePlanes& other) const {
+  void find_shared() {
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 3; ++j)
+        if (face_[0]->corner[i] == face_[1]->corner[j]) same_[0][i] = j, same_[1][j] = i, ++shared_;
+  }
+
+  /// Whether the corners of k are on one side of the other's plane and out of reach.
+  bool is_beside(size_t k) {
+    auto& [a, b, c] = height_[k];
+    const HeightPlane& plane = face_[1 - k]->plane;
+    const auto& at = face_[k]->at;
+    a = plane.height(at[0]), b = plane.height(at[1]), c = plane.height(at[2]);
+    return (a > reach_ && b > reach_ && c > reach_) || (a < -reach_ && b < -reach_ && c < -reach_);
+  }
+  /// The same of those that are not shared.
+  bool is_beside_but_shared(size_t k) const {
     bool is_above = true, is_below = true;
     for (size_t i = 0; i < 3; ++i) {
       if (same_[k][i] != kNotShared) continue;
-      const double h = other.face.height(at_[k][i]);
-      is_above = is_above && h > reach_;
-      is_below = is_below && h < -reach_;
+      is_above = is_above && height_[k][i] > reach_;
+      is_below = is_below && height_[k][i] < -reach_;
     }
     return is_above || is_below;
   }
 
+  /// Points that are near each other are near both planes: whether those of one face are apart from those of the other
+  /// along the line that the planes have in common. Where a corner is shared, the sides across from it are looked at.
+  bool are_apart_along_common_line() const {
+    if (shared_ > 1) return false;
+    const WorldPoint line = cross(face_[0]->plane.normal, face_[1]->plane.normal);
+    if (length_sq(line) < kNearlyParallel) return false;
+    const double by = weld_ * length(line);
+    const Range s = near_other(0, line), t = near_other(1, line);
+    if (shared_ == 0) return s.is_apart(t, by);
+    return side_near_other(0, line).is_apart(t, by) && side_near_other(1, line).is_apart(s, by);
+  }
+  Range near_other(size_t k, const WorldPoint& line) const {
+    Range range;
+    for (size_t i = 0; i < 3; ++i) add_near(k, i, line, range);
+    return range;
+  }
+  Range side_near_other(size_t k, const WorldPoint& line) const {
+    Range range;
+    for (size_t i = 0; i < 3; ++i)
+      if (same_[k][i] == kNotShared && same_[k][(i + 1) % 3] == kNotShared) add_near(k, i, line, range);
+    return range;
+  }
+  /// Of edge i of k.
+  void add_near(size_t k, size_t i, const WorldPoint& line, Range& range) const {
+    const size_t j = (i + 1) % 3;
+    const double h = height_[k][i], g = height_[k][j], x = dot(line, face_[k]->at[i]), y = dot(line, face_[k]->at[j]);
+    if (std::abs(h) <= weld_) range.add(x);
+    if (std::abs(g) <= weld_) range.add(y);
+    for (const double level : {-weld_, weld_})
+      if ((h < level) != (g < level)) range.add(x + (level - h) / (g - h) * (y - x));
+  }
+
   /// Whether the corners of k are beyond an edge of the other and out of reach, or its ends.
-  bool is_beyond_edge(size_t k, const FacePlanes& other) const {
+  bool is_beyond_edge(size_t k) const {
     for (size_t e = 0; e < 3; ++e) {
       const auto is_beyond = [&](size_t i) {
-        return same_[k][i] == e || same_[k][i] == (e + 1) % 3 || other.edge[e].height(at_[k][i]) > reach_;
+        return same_[k][i] == e || same_[k][i] == (e + 1) % 3 ||
+               face_[1 - k]->across_edge[e].height(face_[k]->at[i]) > reach_;
       };
       if (is_beyond(0) && is_beyond(1) && is_beyond(2)) return true;
     }
     return false;
   }
 
-  double reach_;
-  std::array<std::array<WorldPoint, 3>, 2> at_;
+  std::array<const FacePlanes*, 2> face_;
+  double reach_, weld_;
   std::array<std::array<size_t, 3>, 2> same_ = {{{3, 3, 3}, {3, 3, 3}}};  ///< the other's corner that this one is
+  std::array<std::array<double, 3>, 2> height_;                           ///< of corners above the other's plane
   int shared_ = 0;
 };
 
@@ -82,26 +134,29 @@ enum class Meeting { apart, at_end, inside };
 
 class FacePair {
  public:
-  FacePair(const LatticeFaces& faces, const FaceAndPlanes& f, const FaceAndPlanes& g, Contacts& to)
+  FacePair(const LatticeFaces& faces, const FacePlanes& f, const FacePlanes& g, Contacts& to)
       : faces_(faces),
         to_(to),
         reach_sq_(square(faces.reach_steps)),
         weld_sq_(square(faces.weld_steps())),
         number_{f.number, g.number},
-        corner_{faces.face[f.number], faces.face[g.number]},
-        plane_{f.planes.face, g.planes.face} {
+        corner_{f.corner, g.corner},
+        plane_{f.plane, g.plane} {
     for (size_t s = 0; s < 2; ++s) normal_[s] = normal_of(at(corner_[s][0]), at(corner_[s][1]), at(corner_[s][2]));
   }
 
   void meet() {
     if (faces_.leaves_near && !triangles_intersect(corners_of(0), corners_of(1))) return;
     if (find_close_corners()) return;
+    const size_t before = to_.found.size();
     for (size_t s = 0; s < 2; ++s)
       for (size_t i = 0; i < 3; ++i) place_[s][i] = place_of(s, i);
     add_corners();
     add_edges();
     for (size_t s = 0; s < 2; ++s)
       for (size_t i = 0; i < 3; ++i) add_pass(s, i);
+    if (to_.found.size() == before && triangles_intersect_apart(corners_of(0), corners_of(1)))
+      to_.crossing.push_back(number_);
   }
 
  private:
@@ -172,12 +227,13 @@ class FacePair {
 
   /// Whether two edges without a common end meet, and where; `at_end` when an end of one is on the other.
   Meeting meeting_of(const Ends& d, const Ends& e, StepPoint& where) const {
-    if (is_on(d[0], e) || is_on(d[1], e) || is_on(e[0], d) || is_on(e[1], d)) return Meeting::at_end;
     const Vec64 u = difference(at(d[1]), at(d[0])), w = difference(at(e[1]), at(e[0])),
                 r = difference(at(e[0]), at(d[0])), normal = cross(u, w);
     const WorldPoint n = as_world(normal);
     const double sq = length_sq(n);
-    if (!(sq > 0) || std::abs(dot(n, as_world(r))) > faces_.reach_steps * std::sqrt(sq)) return Meeting::apart;
+    if (sq > 0 && std::abs(dot(n, as_world(r))) > faces_.reach_steps * std::sqrt(sq)) return Meeting::apart;
+    if (is_on(d[0], e) || is_on(d[1], e) || is_on(e[0], d) || is_on(e[1], d)) return Meeting::at_end;
+    if (!(sq > 0)) return Meeting::apart;
     const double along_d = dot(as_world(cross(r, w)), n) / sq, along_e = dot(as_world(cross(r, u)), n) / sq;
     if (!(along_d > 0 && along_d < 1 && along_e > 0 && along_e < 1)) return Meeting::apart;
     const WorldPoint p = as_world(at(d[0])) + along_d * as_world(u), q = as_world(at(e[0])) + along_e * as_world(w);
@@ -244,21 +300,21 @@ class FacePair {
 }  // namespace
 
 FacePlanes planes_of(const LatticeFaces& faces, uint32_t f) {
-  const Corners& corner = faces.face[f];
-  const StepPoint &a = faces.point[corner[0]], &b = faces.point[corner[1]], &c = faces.point[corner[2]];
   FacePlanes planes;
-  planes.face = plane_through(as_world(a), as_world(normal_of(a, b, c)));
+  planes.number = f;
+  planes.corner = faces.face[f];
+  const auto at = [&](size_t i) { return faces.point[planes.corner[i % 3]]; };
+  planes.plane = plane_through(as_world(at(0)), as_world(normal_of(at(0), at(1), at(2))));
   for (size_t i = 0; i < 3; ++i) {
-    const WorldPoint from = as_world(faces.point[corner[i]]), to = as_world(faces.point[corner[(i + 1) % 3]]);
-    planes.edge[i] = plane_through(from, cross(to - from, planes.face.normal));
+    planes.at[i] = as_world(at(i));
+    planes.across_edge[i] = plane_through(planes.at[i], cross(as_world(at(i + 1)) - planes.at[i], planes.plane.normal));
   }
   return planes;
 }
 
-void meet_faces(const LatticeFaces& faces, const FaceAndPlanes& f, const FaceAndPlanes& g, Contacts& to) {
+void meet_faces(const LatticeFaces& faces, const FacePlanes& f, const FacePlanes& g, Contacts& to) {
   ++to.pairs;
-  const Separation separation(faces, faces.face[f.number], faces.face[g.number]);
-  if (separation.has_all_shared() || separation.is_known(f.planes, g.planes)) return;
+  if (Separation(f, g, faces).is_known()) return;
   if (f.number < g.number)
     FacePair(faces, f, g, to).meet();
   else

@@ -14,21 +14,19 @@ struct HeightPlane {
   double height(const WorldPoint& p) const { return dot(normal, p) - offset; }
 };
 
-/// A face's own plane, and those across it through its edges: what lies beyond one of these is above it.
+/// A face with what many pairs ask of it.
 struct FacePlanes {
-  HeightPlane face;
-  std::array<HeightPlane, 3> edge;
+  uint32_t number;
+  Corners corner;
+  std::array<WorldPoint, 3> at;
+  HeightPlane plane;
+  std::array<HeightPlane, 3> across_edge;  ///< what lies beyond edge i is above the i-th
 };
 FacePlanes planes_of(const LatticeFaces& faces, uint32_t f);
 
-/// A face and its planes, which many pairs have in common.
-struct FaceAndPlanes {
-  uint32_t number;
-  const FacePlanes& planes;
-};
-
-/// Adds the contacts of two faces; where they have points that are to be one, these alone.
-void meet_faces(const LatticeFaces& faces, const FaceAndPlanes& f, const FaceAndPlanes& g, Contacts& to);
+/// Adds the contacts of two faces; where they have points that are to be one, these alone. Of faces that intersect,
+/// which is decided exactly, something is added.
+void meet_faces(const LatticeFaces& faces, const FacePlanes& f, const FacePlanes& g, Contacts& to);
 
 /// Adds the contact of a face with itself, if it is too low to be a triangle: its apex in its longest edge, or corners
 /// that are to be one. Result: whether it is.

@@ -1,4 +1,4 @@
-// weld_close (see insert_contacts.h).
+// weld_close and unsettle_named (see insert_contacts.h).
 #include <algorithm>
 
 #include "repair/arrangement/insert_contacts.h"
@@ -20,12 +20,18 @@ std::vector<uint32_t> kept_points(size_t count, const std::vector<Ends>& close) 
 
 }  // namespace
 
-void weld_close(LatticeFaces& faces, const Contacts& contacts) {
-  const std::vector<uint32_t> kept = kept_points(faces.point.size(), contacts.close);
+void unsettle_named(LatticeFaces& faces, const Contacts& contacts) {
   std::fill(faces.is_unsettled.begin(), faces.is_unsettled.end(), uint8_t(0));
   for (const Contact& c : contacts.found)
     for (const uint32_t f : c.pair) faces.is_unsettled[f] = 1;
   for (const uint32_t f : contacts.near_close) faces.is_unsettled[f] = 1;
+  for (const auto& pair : contacts.crossing)
+    for (const uint32_t f : pair) faces.is_unsettled[f] = 1;
+}
+
+void weld_close(LatticeFaces& faces, const Contacts& contacts) {
+  const std::vector<uint32_t> kept = kept_points(faces.point.size(), contacts.close);
+  unsettle_named(faces, contacts);
   size_t count = 0;
   for (size_t f = 0; f < faces.face.size(); ++f) {
     Corners corner = faces.face[f];
