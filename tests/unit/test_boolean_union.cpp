@@ -60,6 +60,31 @@ TriangleSoup boxes_in_a_row(int count) {
 
 TriangleSoup ball(double radius, double x = 0) { return shapes::sphere({x, 0, 0}, radius, 24); }
 
+/// Boxes between whole numbers below 6, whose corners are then moved by up to `noise`.
+struct GridBoxes {
+  TriangleSoup soup;
+  int cells = 0;  ///< of the grid that they cover
+
+  GridBoxes(uint64_t seed, double noise) {
+    bool is_covered[6][6][6] = {};
+    uint64_t next = 0;
+    const auto below = [&](uint64_t count) { return int(random_bits(seed, next++) % count); };
+    for (int boxes = 2 + below(6); boxes > 0; --boxes) {
+      const int x = below(5), y = below(5), z = below(5);
+      const int to_x = x + 1 + below(uint64_t(5 - x)), to_y = y + 1 + below(uint64_t(5 - y)),
+                to_z = z + 1 + below(uint64_t(5 - z));
+      soup = together(soup, box({double(x), double(y), double(z)}, {double(to_x), double(to_y), double(to_z)}));
+      for (int i = x; i < to_x; ++i)
+        for (int j = y; j < to_y; ++j)
+          for (int k = z; k < to_z; ++k) is_covered[i][j][k] = true;
+    }
+    for (const auto& plane : is_covered)
+      for (const auto& row : plane) cells += int(std::count(row, row + 6, true));
+    for (WorldPoint& p : soup.vertices)
+      for (double* x : {&p.x, &p.y, &p.z}) *x += noise * (below(2001) / 1000. - 1);
+  }
+};
+
 int winding_at(const TriangleSoup& soup, const WorldPoint& p) {
   int number = 0;
   RayColumns(soup.vertices, soup.triangles).for_each_crossing(p, 0xffffffffu, [&](uint32_t, int sign) {
@@ -293,6 +318,24 @@ TEST_CASE("boolean union: an open part stays as it is beside others, if it is to
   CHECK(u.report.cut_faces > 0);
   Context context;
   CHECK(measure_topology(u.soup, context).topology.boundary_loops == 1);
+}
+
+TEST_CASE("boolean union: boxes whose planes are one or nearly are as much as the cells of the grid that they cover",
+          "[boolean_union]") {
+  int given_up = 0;
+  for (uint64_t seed = 0; seed < 160; ++seed)
+    for (const double noise : {0., 1e-7, 1e-5, 1e-4}) {
+      CAPTURE(seed, noise);
+      const GridBoxes boxes(seed, noise);
+      const United u = united(boxes.soup);
+      if (!u.report.given_up.empty()) {
+        CHECK(noise > 1e-7);
+        ++given_up;
+        continue;
+      }
+      CHECK(isoshell::volume(u.soup) == Approx(boxes.cells).epsilon(1e-7 + 10 * noise));
+    }
+  CHECK(given_up < 16);
 }
 
 TEST_CASE("boolean union: a cancelled context ends it", "[boolean_union]") {

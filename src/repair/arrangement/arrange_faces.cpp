@@ -100,8 +100,10 @@ StepPoint place_of(const LatticeFaces& faces, const std::array<uint32_t, 2>& pai
 }
 
 ArrangedFaces result_of(LatticeFaces faces, const TriangleSoup& soup, const WeldedVertices& welded,
-                        const StepFrame& frame) {
+                        const WorldBox& box) {
+  const StepFrame frame(box);
   ArrangedFaces result;
+  result.box = box;
   std::vector<uint32_t> number(faces.point.size(), kNoFace);
   for (const Corners& c : faces.face)
     for (const uint32_t v : c) number[v] = 0;
@@ -159,10 +161,11 @@ std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, Step
 std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context,
                                      const ArrangedGroups& groups) {
   const WeldedVertices welded = weld_vertices(soup.vertices, soup.triangles);
-  const StepFrame frame(groups.box ? *groups.box : box_of(welded.position));
+  const WorldBox box = groups.box ? *groups.box : box_of(welded.position);
+  const StepFrame frame(box);
   LatticeFaces whole = snapped(soup, welded, frame);
   if (groups.first_of_second > 0 && !unsettle_near(whole, groups.first_of_second)) {
-    ArrangedFaces apart = result_of(std::move(whole), soup, welded, frame);
+    ArrangedFaces apart = result_of(std::move(whole), soup, welded, box);
     apart.is_near = false;
     return apart;
   }
@@ -174,7 +177,7 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
     faces.reach_steps = reach;
     StepPoint at{0, 0, 0};
     std::optional<LatticeFaces> cut = cut_all(std::move(faces), work_left, at, context);
-    if (cut) return result_of(std::move(*cut), soup, welded, frame);
+    if (cut) return result_of(std::move(*cut), soup, welded, box);
     failed_at = frame.to_world(at);
   }
   return {};

@@ -18,6 +18,7 @@ struct ArrangedGroups {
 };
 
 struct ArrangedFaces {
+  WorldBox box;  ///< of the lattice
   std::vector<WorldPoint> point;
   std::vector<std::array<uint32_t, 3>> face;
   std::vector<uint32_t> source;  ///< per face the triangle of the soup that it is a part of, and turns like; ascending

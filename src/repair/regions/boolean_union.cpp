@@ -169,6 +169,7 @@ class Union {
   /// Of faces that meet nowhere but at what they share.
   Solids outer_faces(Solids solids, SolidRule rule) {
     ArrangedFaces faces;
+    faces.box = box_;
     faces.point = std::move(solids.soup.vertices);
     faces.face = std::move(solids.soup.triangles);
     faces.source.resize(faces.face.size());

@@ -11,6 +11,7 @@
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "measure/around_edge.h"
+#include "repair/arrangement/step_frame.h"
 #include "repair/solids/winding.h"
 
 namespace isoshell::repair {
@@ -42,11 +43,14 @@ class CellFinder {
   /// Between two neighbours around an edge is one cell.
   void join_around_edges() {
     const EdgeSides edges = find_edge_sides(walls_.triangle, walls_.point.size());
+    const StepFrame frame(walls_.box);
+    std::vector<WorldPoint> on_lattice;
+    for (const WorldPoint& p : walls_.point) on_lattice.push_back(as_world(frame.from(p)));
     int64_t step = 0;
     for_each_edge(edges, [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
       if (step++ % kEdgesBetweenLooks == 0) check_cancel(context_, "regions");
       std::vector<TriangleAtEdge> around = triangles_at_edge(walls_.triangle, u, at_edge);
-      if (around.size() > 2) sort_around_edge(walls_.point, u, v, around);
+      if (around.size() > 2) sort_around_edge(on_lattice, u, v, around);
       for (size_t i = 0; i < around.size(); ++i) {
         const TriangleAtEdge &here = around[i], &next = around[(i + 1) % around.size()];
         shells_.unite(side(here.triangle, !here.rises), side(next.triangle, next.rises));

@@ -20,7 +20,8 @@ struct Cells {
 };
 
 /// Sides of walls are joined around edges, and surfaces that lie in a cell of another one by rays. Decides where walls
-/// lie around edges without error. Throws: interrupted. Cost: a sort of the edges, and a ray from each connected
+/// lie around edges without error, on their lattice: corners are up to half a step off it, which may turn two walls
+/// that are nearly on each other. Throws: interrupted. Cost: a sort of the edges, and a ray from each connected
 /// surface.
 Cells find_cells(const Walls& walls, const Context& context);
 

@@ -50,6 +50,7 @@ Walls find_walls(const ArrangedFaces& arranged) {
   }
   tbb::parallel_sort(faces.begin(), faces.end());
   Walls walls;
+  walls.box = arranged.box;
   walls.point = welded.position;
   for (const PlacedFace& f : faces) {
     if (walls.triangle.empty() || walls.triangle.back() != f.corners) {

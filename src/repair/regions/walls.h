@@ -16,8 +16,9 @@ struct FaceOnWall {
   bool is_turned;   ///< it faces to the back of the wall
 };
 
-/// Any two walls meet in corners and edges that they share, or not at all.
+/// Any two walls meet in corners and edges that they share, or not at all: on the lattice that they were arranged on.
 struct Walls {
+  WorldBox box;                                   ///< of this lattice
   std::vector<WorldPoint> point;                  ///< ascending
   std::vector<std::array<uint32_t, 3>> triangle;  ///< corners ascending: their order says where the front is
   std::vector<FaceOnWall> on_wall;                ///< wall by wall, ascending by source
