@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/weld.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/error.h"
+#include "measure/crossings.h"
+#include "repair/arrangement/step_frame.h"
 #include "repair/solids/winding.h"
 #include "support/catch.h"
 #include "support/shapes.h"
@@ -84,6 +87,19 @@ struct GridBoxes {
       for (double* x : {&p.x, &p.y, &p.z}) *x += noise * (below(2001) / 1000. - 1);
   }
 };
+
+/// Triangles of the result that meet outside of what they share, on the lattice that faces are cut on.
+size_t count_crossings(const TriangleSoup& result, const TriangleSoup& input) {
+  const repair::StepFrame frame(box_of(input.vertices, input.triangles));
+  const WeldedVertices welded = weld_vertices(result.vertices, result.triangles);
+  std::vector<PointQ8> points;
+  for (const WorldPoint& p : welded.position) points.push_back(frame.from(p));
+  std::vector<TriangleIndices> triangles;
+  for (const auto& [a, b, c] : result.triangles)
+    triangles.push_back({welded.place[a], welded.place[b], welded.place[c]});
+  return crossing_pairs({points.data(), int64_t(points.size())}, {triangles.data(), int64_t(triangles.size())}, {}, {})
+      .size();
+}
 
 int winding_at(const TriangleSoup& soup, const WorldPoint& p) {
   int number = 0;
@@ -334,6 +350,7 @@ TEST_CASE("boolean union: boxes whose planes are one or nearly are as much as th
         continue;
       }
       CHECK(isoshell::volume(u.soup) == Approx(boxes.cells).epsilon(1e-7 + 10 * noise));
+      if (u.report.cut_faces > 0 && u.report.separated_edges == 0) CHECK(count_crossings(u.soup, boxes.soup) == 0);
     }
   CHECK(given_up < 16);
 }

@@ -63,7 +63,7 @@ TEST_CASE("dissolved cuts: a box that others have cut, and that has all its piec
   };
   std::vector<uint8_t> is_kept;
   for (const WorldPoint& p : pieces.point) is_kept.push_back(is_corner(p));
-  repair::dissolve_cuts(pieces, is_kept, box_of(all.vertices));
+  repair::dissolve_cuts(pieces, is_kept, box_of(all.vertices), Context());
   CHECK(pieces.face.size() == 12);
   CHECK(volume(soup_of(pieces)) == Approx(10));
 }
@@ -89,7 +89,7 @@ TEST_CASE("dissolved cuts: what is left of triangles keeps its area, its outline
   std::vector<uint8_t> is_kept(outside.point.size(), 0);
   for (size_t v = 0; v < is_kept.size(); ++v)
     for (const WorldPoint& p : all.vertices) is_kept[v] |= p == outside.point[v];
-  repair::dissolve_cuts(outside, is_kept, box_of(all.vertices));
+  repair::dissolve_cuts(outside, is_kept, box_of(all.vertices), Context());
   CHECK(outside.face.size() <= before);
   CHECK(area_of(outside) == Approx(area));
   Context context;

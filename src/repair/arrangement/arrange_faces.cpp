@@ -9,7 +9,6 @@
 #include "geometry/weld.h"
 #include "geometry/world_vector.h"
 #include "measure/box_tree.h"
-#include "measure/crossings.h"
 #include "repair/arrangement/find_contacts.h"
 #include "repair/arrangement/insert_contacts.h"
 #include "repair/arrangement/step_frame.h"
@@ -20,7 +19,7 @@ namespace {
 // What is bent through points within reach may come into reach of others, and again, where many surfaces are nearly
 // one. After some rounds only what meets is cut, and less is bent. Where that does not end either, all is tried again
 // with a smaller reach.
-constexpr double kReaches[] = {128, 96, 64, 32, 16}, kLateReach = 3;
+constexpr double kReaches[] = {128, 96, 64, 32, 16};
 constexpr int kNearEdgeRounds = 3, kFullRounds = 8, kMostRounds = 32;
 constexpr size_t kMostContactsOfFace = 16, kMostGrowth = 3, kFewFaces = 4096;
 
@@ -80,19 +79,17 @@ bool unsettle_near(LatticeFaces& faces, size_t first_of_second) {
 }
 
 /// Faces that are settled though they meet outside of what they share are unsettled then.
-void unsettle_crossing(LatticeFaces& faces, const Context& context) {
-  std::vector<TriangleIndices> triangles;
-  std::vector<uint32_t> number;
+void unsettle_crossing(LatticeFaces& faces, const std::vector<uint8_t>& is_checked, const Context& context) {
+  LatticeFaces settled;
   for (uint32_t f = 0; f < faces.face.size(); ++f) {
     if (faces.is_unsettled[f]) continue;
-    const auto& [a, b, c] = faces.face[f];
-    triangles.push_back({a, b, c});
-    number.push_back(f);
+    settled.face.push_back(faces.face[f]);
+    settled.source.push_back(f);
+    settled.is_unsettled.push_back(is_checked.empty() || !is_checked[faces.source[f]]);
   }
-  for (const auto& pair : crossing_pairs({faces.point.data(), int64_t(faces.point.size())},
-                                         {triangles.data(), int64_t(triangles.size())}, {}, context.cancel))
-    for (const uint32_t t : pair) faces.is_unsettled[number[t]] = 1;
-  check_cancel(context, "regions");
+  settled.point = faces.point;
+  unsettle_crossing(settled, context);
+  for (size_t i = 0; i < settled.face.size(); ++i) faces.is_unsettled[settled.source[i]] = settled.is_unsettled[i];
 }
 
 StepPoint place_of(const LatticeFaces& faces, const std::array<uint32_t, 2>& pair) {
@@ -134,7 +131,7 @@ std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, Step
   for (int round = 0; round < kMostRounds; ++round) {
     if (round == kNearEdgeRounds) faces.leaves_near_edges = true;
     if (round == kFullRounds) {
-      faces.reach_steps = kLateReach;
+      faces.reach_steps = kLateReachSteps;
       faces.leaves_near = true;
       most_faces = kFewFaces + kMostGrowth * faces.face.size();
     }
@@ -169,7 +166,7 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
     apart.is_near = false;
     return apart;
   }
-  unsettle_crossing(whole, context);
+  unsettle_crossing(whole, groups.is_checked, context);
   int64_t work_left = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
   for (const double reach : kReaches) {
     if (work_left < 0) return {};

@@ -15,6 +15,8 @@ namespace isoshell::repair {
 struct ArrangedGroups {
   size_t first_of_second = 0;   ///< triangles before it are cut along those behind it alone; 0: all along all
   std::optional<WorldBox> box;  ///< of the lattice, around all triangles; none: theirs
+  /// Per triangle whether it is known to meet others of its group in what they share alone; empty: of none.
+  std::vector<uint8_t> is_checked = {};
 };
 
 struct ArrangedFaces {

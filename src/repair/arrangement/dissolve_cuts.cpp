@@ -7,6 +7,7 @@
 #include "core/buckets.h"
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
+#include "repair/arrangement/find_contacts.h"
 #include "repair/arrangement/step_frame.h"
 #include "repair/holes/plane_triangulation.h"
 
@@ -24,8 +25,8 @@ struct BorderEdge {
 
 class Dissolver {
  public:
-  Dissolver(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box)
-      : faces_(faces), stays_(is_kept) {
+  Dissolver(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box, const Context& context)
+      : faces_(faces), stays_(is_kept), context_(context) {
     const StepFrame frame(box);
     for (const WorldPoint& p : faces.point) step_.push_back(frame.from(p));
     uint32_t sources = 0;
@@ -41,7 +42,8 @@ class Dissolver {
       if (pieces_.in(s).size <= 1 || !is_flat(s)) leave(s);
     keep_ends();
     keep_bent_borders();
-    triangulate_all();
+    do triangulate_all();
+    while (leave_crossing());
     take();
   }
 
@@ -154,6 +156,27 @@ class Dissolver {
     }
   }
 
+  /// Where new triangles, which are up to some steps off the pieces, pass through others, the pieces stay. Result:
+  /// whether any do.
+  bool leave_crossing() {
+    LatticeFaces all;
+    for (size_t f = 0; f < faces_.face.size(); ++f)
+      if (is_left_[faces_.source[f]]) all.face.push_back(faces_.face[f]);
+    const size_t left = all.face.size();
+    all.is_unsettled.assign(left, 0);
+    all.face.insert(all.face.end(), made_.begin(), made_.end());
+    all.is_unsettled.resize(all.face.size(), 1);
+    all.point = step_;
+    unsettle_crossing(all, context_);
+    bool is_any = false;
+    for (size_t i = 0; i < made_.size(); ++i) {
+      if (!all.is_unsettled[left + i] || is_left_[made_source_[i]]) continue;
+      leave(made_source_[i]);
+      is_any = true;
+    }
+    return is_any;
+  }
+
   bool triangulate(uint32_t source) {
     WorldPoint normal{0, 0, 0};
     std::vector<uint32_t> used;
@@ -240,12 +263,14 @@ class Dissolver {
   std::vector<uint32_t> borders_at_;  ///< per point the edges
   std::vector<std::array<uint32_t, 3>> made_;
   std::vector<uint32_t> made_source_;
+  const Context& context_;
 };
 
 }  // namespace
 
-void dissolve_cuts(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box) {
-  Dissolver(faces, is_kept, box).run();
+void dissolve_cuts(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box,
+                   const Context& context) {
+  Dissolver(faces, is_kept, box, context).run();
 }
 
 }  // namespace isoshell::repair

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "isoshell/backend.h"
 
 namespace isoshell::repair {
 
@@ -19,7 +20,9 @@ struct PiecedFaces {
 /// What is left of a triangle is triangulated again between its borders with other triangles. Points in it go, and
 /// those in straight borders of two triangles, which earlier cuts have left; those that `is_kept` stay, as do points
 /// that are more than two steps of the lattice in this box off. Pieces that have no such triangulation stay as they
-/// are. Cost: a sort of the edges, and for each triangle of several pieces n sqrt n in their number.
-void dissolve_cuts(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box);
+/// are, and so do those whose new triangles would intersect others, which is decided exactly. Throws: interrupted.
+/// Cost: a sort of the edges, and for each triangle of several pieces n sqrt n in their number.
+void dissolve_cuts(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box,
+                   const Context& context);
 
 }  // namespace isoshell::repair

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <optional>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "measure/box_tree.h"
+#include "repair/arrangement/insert_contacts.h"
 #include "repair/arrangement/meet_faces.h"
 
 namespace isoshell::repair {
@@ -81,6 +83,12 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
     all.pairs += part.pairs;
   }
   return all;
+}
+
+void unsettle_crossing(LatticeFaces& faces, const Context& context) {
+  faces.leaves_near = true;
+  faces.reach_steps = kLateReachSteps;
+  unsettle_named(faces, find_contacts(faces, std::numeric_limits<int64_t>::max(), context));
 }
 
 }  // namespace isoshell::repair

@@ -11,4 +11,8 @@ namespace isoshell::repair {
 /// pairs whose boxes meet. Where that is more than `most_work`, less may be found; work() is more than that then.
 Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Context& context);
 
+/// Of the same pairs those that intersect outside of what they share, exactly: these faces are unsettled then, and
+/// those without area, and no others. Throws: interrupted. Cost: the same.
+void unsettle_crossing(LatticeFaces& faces, const Context& context);
+
 }  // namespace isoshell::repair

@@ -25,6 +25,8 @@ inline Ends ends_of(uint32_t a, uint32_t b) { return a < b ? Ends{a, b} : Ends{b
 inline Ends edge_of(const Corners& f, size_t i) { return ends_of(f[i], f[(i + 1) % 3]); }
 inline bool has_corner(const Corners& f, uint32_t v) { return f[0] == v || f[1] == v || f[2] == v; }
 
+constexpr double kLateReachSteps = 3;  // where what is near without meeting stays as it is
+
 struct LatticeFaces {
   std::vector<StepPoint> point;
   std::vector<Corners> face;

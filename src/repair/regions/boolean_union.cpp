@@ -25,7 +25,8 @@ using Corners = std::array<uint32_t, 3>;
 struct Solids {
   TriangleSoup soup;
   std::vector<uint32_t> source;
-  bool bound_their_union = true;  ///< false: some may lie in others
+  std::vector<uint8_t> is_checked;  ///< per face: it meets no other one outside of what they share
+  bool bound_their_union = true;    ///< false: some may lie in others
 };
 
 void append(Solids& to, const Solids& more) {
@@ -33,6 +34,7 @@ void append(Solids& to, const Solids& more) {
   to.soup.vertices.insert(to.soup.vertices.end(), more.soup.vertices.begin(), more.soup.vertices.end());
   for (const auto& [a, b, c] : more.soup.triangles) to.soup.triangles.push_back({a + shift, b + shift, c + shift});
   to.source.insert(to.source.end(), more.source.begin(), more.source.end());
+  to.is_checked.insert(to.is_checked.end(), more.is_checked.begin(), more.is_checked.end());
   to.bound_their_union = to.bound_their_union && more.bound_their_union;
 }
 
@@ -131,6 +133,7 @@ class Union {
     const bool is_turned = p.is_turned != (p.container != kNoContainer);
     Solids solid;
     solid.source = p.triangles;
+    solid.is_checked.assign(p.triangles.size(), 0);
     for (const uint32_t t : p.triangles) {
       Corners corner = soup_.triangles[t];
       if (is_turned) std::swap(corner[1], corner[2]);
@@ -159,7 +162,8 @@ class Union {
 
   ArrangedFaces arranged(const Solids& solids, size_t first_of_second) {
     WorldPoint failed_at{0, 0, 0};
-    std::optional<ArrangedFaces> faces = arrange_faces(solids.soup, failed_at, context_, {first_of_second, box_});
+    std::optional<ArrangedFaces> faces =
+        arrange_faces(solids.soup, failed_at, context_, {first_of_second, box_, solids.is_checked});
     if (!faces) throw Failure{"the faces cannot be cut along each other there", failed_at};
     for (size_t f = 1; f < faces->source.size(); ++f)
       if (faces->source[f] == faces->source[f - 1]) is_cut_[solids.source[faces->source[f]]] = 1;
@@ -186,12 +190,13 @@ class Union {
     PiecedFaces pieces{std::move(outer.point), std::move(outer.face), std::move(outer.source)};
     // Pieces of pieces have numbers of their own here, so that no array is as long as the input.
     const std::vector<uint32_t> triangles = number_sources(pieces.source, solids.source);
-    dissolve_cuts(pieces, given_among(pieces.point), box_);
+    dissolve_cuts(pieces, given_among(pieces.point), box_, context_);
     for (uint32_t& f : pieces.source) f = triangles[f];
     Solids result;
     result.soup.vertices = std::move(pieces.point);
     result.soup.triangles = std::move(pieces.face);
     result.source = std::move(pieces.source);
+    result.is_checked.assign(result.source.size(), 1);
     return result;
   }
 
