@@ -45,7 +45,7 @@ bool are_same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 TEST_CASE("arrangement: what meets nothing stays as it is, to the last bit", "[arrangement]") {
   const TriangleSoup ball = shapes::sphere({.1, .2, .3}, 1, 24);
   const auto faces = check_arranged(ball, 2);
-  CHECK(faces.cut_faces == 0);
+  CHECK(faces.cut_faces() == 0);
   REQUIRE(faces.face.size() == ball.triangles.size());
   for (size_t f = 0; f < faces.face.size(); ++f)
     for (size_t i = 0; i < 3; ++i) CHECK(faces.point[faces.face[f][i]] == ball.vertices[ball.triangles[f][i]]);
@@ -134,7 +134,7 @@ TEST_CASE("arrangement: corners nearly on faces and edges of others are on them"
   s.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
   const auto faces = check_arranged(s, 4);
   CHECK(faces.point.size() == s.vertices.size());
-  CHECK(faces.cut_faces == 1);
+  CHECK(faces.cut_faces() == 1);
   const auto of_first = std::count(faces.source.begin(), faces.source.end(), 0u);
   CHECK(of_first == 4);
 }
@@ -174,5 +174,5 @@ TEST_CASE("arrangement: a result is independent of threads", "[arrangement]") {
   CHECK(are_same_bytes(one.point, four.point));
   CHECK(are_same_bytes(one.face, four.face));
   CHECK(are_same_bytes(one.source, four.source));
-  CHECK(one.cut_faces == four.cut_faces);
+  CHECK(one.cut_faces() == four.cut_faces());
 }

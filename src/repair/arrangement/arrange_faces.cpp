@@ -109,14 +109,13 @@ ArrangedFaces result_of(LatticeFaces faces, const TriangleSoup& soup, const Weld
     number[v] = uint32_t(result.point.size());
     result.point.push_back(v < welded.position.size() ? welded.position[v] : frame.to_world(faces.point[v]));
   }
-  std::vector<uint8_t> is_whole(soup.triangles.size(), 0);
+  result.is_cut.assign(soup.triangles.size(), 0);
   for (size_t f = 0; f < faces.face.size(); ++f) {
     const auto& corner = soup.triangles[faces.source[f]];
     bool is_same = true;
     for (size_t i = 0; i < 3; ++i) is_same = is_same && faces.face[f][i] == welded.place[corner[i]];
-    if (is_same) is_whole[faces.source[f]] = 1;
+    if (!is_same) result.is_cut[faces.source[f]] = 1;
   }
-  result.cut_faces = std::count(is_whole.begin(), is_whole.end(), 0);
   for (Corners& c : faces.face)
     for (uint32_t& v : c) v = number[v];
   result.face = std::move(faces.face);

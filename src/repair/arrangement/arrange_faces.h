@@ -1,6 +1,7 @@
 // The triangles of a soup cut along each other, so that they meet in corners and whole edges only.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -24,8 +25,10 @@ struct ArrangedFaces {
   std::vector<WorldPoint> point;
   std::vector<std::array<uint32_t, 3>> face;
   std::vector<uint32_t> source;  ///< per face the triangle of the soup that it is a part of, and turns like; ascending
-  int64_t cut_faces = 0;         ///< triangles of the soup that are not one face with their own corners
+  std::vector<uint8_t> is_cut;   ///< per triangle of the soup: it has faces, and not itself alone
   bool is_near = true;           ///< false: nothing was looked at, since the two groups are apart
+
+  int64_t cut_faces() const { return std::count(is_cut.begin(), is_cut.end(), 1); }
 };
 
 /// Two of these faces have corners and whole edges in common and nothing else, or all three corners, as where parts lie

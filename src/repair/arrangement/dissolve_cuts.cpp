@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/buckets.h"
+#include "core/index_sets.h"
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "repair/arrangement/find_contacts.h"
@@ -14,7 +15,9 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr double kMostOffSteps = 16;  // what rounding leaves of a straight line, or a plane
+constexpr double kMostOffSteps = 16;  // what rounding leaves of a straight line, or a plane, from cut to cut
+constexpr double kRoundedSteps = 2;   // what is left of a plane when its corners are put on the lattice
+constexpr double kNearlyOne = .999;   // of the cosine between normals, before planes are compared
 
 /// An edge of a piece whose neighbour there is of another triangle; the piece is to the left of it.
 struct BorderEdge {
@@ -23,23 +26,47 @@ struct BorderEdge {
   bool operator<(const BorderEdge& o) const { return from != o.from ? from < o.from : to < o.to; }
 };
 
+/// Along a direction; none at first.
+struct Range {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+
+  void add(double x) { least = std::min(least, x), most = std::max(most, x); }
+  void add(const Range& o) { add(o.least), add(o.most); }
+  double length() const { return most - least; }
+};
+
 class Dissolver {
  public:
   Dissolver(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box, const Context& context)
-      : faces_(faces), stays_(is_kept), context_(context) {
+      : faces_(faces), source_(faces.source), stays_(is_kept), context_(context) {
     const StepFrame frame(box);
     for (const WorldPoint& p : faces.point) step_.push_back(frame.from(p));
-    uint32_t sources = 0;
-    for (const uint32_t s : faces.source) sources = std::max(sources, s + 1);
-    pieces_ = sort_into_buckets<uint32_t>(sources, int64_t(faces.face.size()),
-                                          [&](int64_t f, auto put) { put(faces_.source[size_t(f)], uint32_t(f)); });
-    is_left_.assign(sources, 0);
+  }
+
+  /// From here on sources are planes: the smallest triangle of each.
+  void join_planes(const std::vector<uint32_t>& kind) {
+    find_pieces(kind.size());
+    IndexSets planes(int64_t(kind.size()));
+    for_each_edge(find_edge_sides(faces_.face, faces_.point.size()),
+                  [&](uint32_t, uint32_t, View<const EdgeSide> sides) {
+                    if (sides.size != 2) return;
+                    const uint32_t s = source_[sides[0].half_edge / 3], t = source_[sides[1].half_edge / 3];
+                    if (kind[s] != kind[t] || planes.root(s) == planes.root(t) || !are_in_one_plane(s, t)) return;
+                    planes.unite(s, t);
+                  });
+    for (uint32_t& s : source_) s = planes.root(s);
+    find_pieces(kind.size());
+    std::vector<uint8_t> is_plane;  // else one was added to the next, as on a surface that bends little
+    for (uint32_t s = 0; s < kind.size(); ++s) is_plane.push_back(is_flat(s));
+    for (size_t f = 0; f < source_.size(); ++f)
+      if (!is_plane[source_[f]]) source_[f] = faces_.source[f];
+    find_pieces(kind.size());
   }
 
   void run() {
     find_borders();
     for (uint32_t s = 0; s < is_left_.size(); ++s)
-      if (pieces_.in(s).size <= 1 || !is_flat(s)) leave(s);
+      if (!has_piece(s) || !is_flat(s)) leave(s);
     keep_ends();
     keep_bent_borders();
     do triangulate_all();
@@ -55,20 +82,41 @@ class Dissolver {
       for (const uint32_t v : faces_.face[f]) stays_[v] = 1;
   }
 
-  bool is_flat(uint32_t source) const {
-    WorldPoint normal{0, 0, 0};
-    const auto at = [&](uint32_t f, size_t i) { return as_world(step_[faces_.face[f][i]]); };
-    for (const uint32_t f : pieces_.in(source)) normal = normal + doubled_area(at(f, 0), at(f, 1), at(f, 2));
-    normal = normalised(normal);
-    const WorldPoint o = at(pieces_.in(source)[0], 0);
-    double lowest = 0, highest = 0;
+  void find_pieces(size_t sources) {
+    normal_.assign(sources, WorldPoint{0, 0, 0});
+    for (size_t f = 0; f < faces_.face.size(); ++f) {
+      const auto& [a, b, c] = faces_.face[f];
+      WorldPoint& normal = normal_[source_[f]];
+      normal = normal + doubled_area(as_world(step_[a]), as_world(step_[b]), as_world(step_[c]));
+    }
+    for (WorldPoint& n : normal_) n = normalised(n);
+    pieces_ = sort_into_buckets<uint32_t>(int64_t(sources), int64_t(faces_.face.size()),
+                                          [&](int64_t f, auto put) { put(source_[size_t(f)], uint32_t(f)); });
+    is_left_.assign(sources, 0);
+  }
+  bool has_piece(uint32_t source) const {
+    const View<const uint32_t> all = pieces_.in(source);
+    return std::any_of(all.begin(), all.end(), [&](uint32_t f) { return faces_.is_piece[f] != 0; });
+  }
+
+  /// How far the pieces of a source reach along a direction.
+  Range reach_along(const WorldPoint& direction, uint32_t source) const {
+    Range range;
     for (const uint32_t f : pieces_.in(source))
-      for (size_t i = 0; i < 3; ++i) {
-        const double height = dot(normal, at(f, i) - o);
-        lowest = std::min(lowest, height);
-        highest = std::max(highest, height);
-      }
-    return highest - lowest <= 2 * kMostOffSteps;
+      for (const uint32_t v : faces_.face[f]) range.add(dot(direction, as_world(step_[v])));
+    return range;
+  }
+  bool is_flat(uint32_t source) const { return reach_along(normal_[source], source).length() <= 2 * kMostOffSteps; }
+  /// Whether all pieces of both are, along the normal of either, as near as rounding leaves them.
+  bool are_in_one_plane(uint32_t s, uint32_t t) const {
+    const WorldPoint &m = normal_[s], &n = normal_[t];
+    if (dot(m, n) < kNearlyOne) return false;
+    const auto is_thin = [&](const WorldPoint& normal) {
+      Range range = reach_along(normal, s);
+      range.add(reach_along(normal, t));
+      return range.length() <= kRoundedSteps;
+    };
+    return is_thin(m) || is_thin(n);
   }
 
   void find_borders() {
@@ -76,7 +124,7 @@ class Dissolver {
     borders_at_.assign(faces_.point.size(), 0);
     for_each_edge(find_edge_sides(faces_.face, faces_.point.size()),
                   [&](uint32_t u, uint32_t v, View<const EdgeSide> sides) {
-                    const auto source = [&](int64_t i) { return faces_.source[sides[i].half_edge / 3]; };
+                    const auto source = [&](int64_t i) { return source_[sides[i].half_edge / 3]; };
                     if (sides.size == 2 && source(0) == source(1)) return;
                     ++borders_at_[u];
                     ++borders_at_[v];
@@ -96,7 +144,7 @@ class Dissolver {
   void keep_ends() {
     const Buckets<uint32_t> sources = sort_into_buckets<uint32_t>(
         int64_t(faces_.point.size()), int64_t(faces_.face.size()), [&](int64_t f, auto put) {
-          for (const uint32_t v : faces_.face[size_t(f)]) put(v, faces_.source[size_t(f)]);
+          for (const uint32_t v : faces_.face[size_t(f)]) put(v, source_[size_t(f)]);
         });
     for (uint32_t v = 0; v < stays_.size(); ++v) {
       const View<const uint32_t> at = sources.in(v);
@@ -161,7 +209,7 @@ class Dissolver {
   bool leave_crossing() {
     LatticeFaces all;
     for (size_t f = 0; f < faces_.face.size(); ++f)
-      if (is_left_[faces_.source[f]]) all.face.push_back(faces_.face[f]);
+      if (is_left_[source_[f]]) all.face.push_back(faces_.face[f]);
     const size_t left = all.face.size();
     all.is_unsettled.assign(left, 0);
     all.face.insert(all.face.end(), made_.begin(), made_.end());
@@ -178,14 +226,11 @@ class Dissolver {
   }
 
   bool triangulate(uint32_t source) {
-    WorldPoint normal{0, 0, 0};
+    const WorldPoint& normal = normal_[source];
     std::vector<uint32_t> used;
-    for (const uint32_t f : pieces_.in(source)) {
-      const auto& [a, b, c] = faces_.face[f];
-      normal = normal + doubled_area(as_world(step_[a]), as_world(step_[b]), as_world(step_[c]));
+    for (const uint32_t f : pieces_.in(source))
       for (const uint32_t v : faces_.face[f])
         if (stays_[v]) used.push_back(v);
-    }
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
     const auto place_of = [&](uint32_t v) {
@@ -244,7 +289,7 @@ class Dissolver {
   void take() {
     PiecedFaces out;
     for (size_t f = 0; f < faces_.face.size(); ++f) {
-      if (!is_left_[faces_.source[f]]) continue;
+      if (!is_left_[source_[f]]) continue;
       out.face.push_back(faces_.face[f]);
       out.source.push_back(faces_.source[f]);
     }
@@ -255,9 +300,11 @@ class Dissolver {
   }
 
   PiecedFaces& faces_;
-  std::vector<uint8_t> stays_;  ///< per point
+  std::vector<uint32_t> source_;  ///< per face
+  std::vector<uint8_t> stays_;    ///< per point
   std::vector<StepPoint> step_;
   Buckets<uint32_t> pieces_;          ///< per source its faces
+  std::vector<WorldPoint> normal_;    ///< per source, of length 1
   std::vector<uint8_t> is_left_;      ///< per source: its pieces stay
   Buckets<BorderEdge> borders_;       ///< per source
   std::vector<uint32_t> borders_at_;  ///< per point the edges
@@ -268,9 +315,11 @@ class Dissolver {
 
 }  // namespace
 
-void dissolve_cuts(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box,
-                   const Context& context) {
-  Dissolver(faces, is_kept, box, context).run();
+void dissolve_cuts(PiecedFaces& faces, const std::vector<uint32_t>& kind, const std::vector<uint8_t>& is_kept,
+                   const WorldBox& box, const Context& context) {
+  Dissolver dissolver(faces, is_kept, box, context);
+  dissolver.join_planes(kind);
+  dissolver.run();
 }
 
 }  // namespace isoshell::repair

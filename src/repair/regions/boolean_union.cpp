@@ -72,10 +72,13 @@ class Union {
         box_(box_of(soup.vertices, soup.triangles)),
         given_(weld_vertices(soup.vertices, soup.triangles).position),
         parts_(find_solid_parts(soup, context)),
+        part_of_(soup.triangles.size(), 0),
         is_cut_(soup.triangles.size(), 0) {}
 
   UnitedSoup united() {
     if (!are_solids()) return {soup_, {}};
+    for (uint32_t p = 0; p < parts_.size(); ++p)
+      for (const uint32_t t : parts_[p].triangles) part_of_[t] = p;
     std::vector<uint32_t> outer;
     for (uint32_t p = 0; p < parts_.size(); ++p) {
       if (parts_[p].shape == PartShape::open) continue;
@@ -165,8 +168,7 @@ class Union {
     std::optional<ArrangedFaces> faces =
         arrange_faces(solids.soup, failed_at, context_, {first_of_second, box_, solids.is_checked});
     if (!faces) throw Failure{"the faces cannot be cut along each other there", failed_at};
-    for (size_t f = 1; f < faces->source.size(); ++f)
-      if (faces->source[f] == faces->source[f - 1]) is_cut_[solids.source[faces->source[f]]] = 1;
+    for (size_t t = 0; t < solids.source.size(); ++t) is_cut_[solids.source[t]] |= faces->is_cut[t];
     return std::move(*faces);
   }
 
@@ -187,10 +189,13 @@ class Union {
     if (!rule) rule = have_closed_chains(walls) ? SolidRule::winding : SolidRule::seen_from_back;
     OuterWalls outer = find_outer_walls(walls, cells, *rule);
     touching_.insert(touching_.end(), outer.touching.begin(), outer.touching.end());
-    PiecedFaces pieces{std::move(outer.point), std::move(outer.face), std::move(outer.source)};
+    PiecedFaces pieces{std::move(outer.point), std::move(outer.face), std::move(outer.source), {}};
+    for (const uint32_t f : pieces.source) pieces.is_piece.push_back(!faces.is_cut.empty() && faces.is_cut[f]);
     // Pieces of pieces have numbers of their own here, so that no array is as long as the input.
     const std::vector<uint32_t> triangles = number_sources(pieces.source, solids.source);
-    dissolve_cuts(pieces, given_among(pieces.point), box_, context_);
+    std::vector<uint32_t> kind;  // planes of several parts are not joined, nor are caps with what they close
+    for (const uint32_t t : triangles) kind.push_back(2 * part_of_[t] + (t >= soup_.first_cap ? 1 : 0));
+    dissolve_cuts(pieces, kind, given_among(pieces.point), box_, context_);
     for (uint32_t& f : pieces.source) f = triangles[f];
     Solids result;
     result.soup.vertices = std::move(pieces.point);
@@ -229,7 +234,7 @@ class Union {
     if (report_.left_components == 0) return;
     WorldPoint at{0, 0, 0};
     const std::optional<ArrangedFaces> faces = arrange_faces(all.soup, at, context_, {first_of_second, box_});
-    if (!faces || faces->cut_faces > 0) throw Failure{"a component that is open meets them", at};
+    if (!faces || faces->cut_faces() > 0) throw Failure{"a component that is open meets them", at};
   }
 
   void count(const Solids& all) {
@@ -289,6 +294,7 @@ class Union {
   const std::vector<WorldPoint> given_;  ///< positions of the input, ascending
   const std::vector<SolidPart> parts_;
   std::map<uint32_t, std::vector<uint32_t>> hollows_;  ///< per part those that bound hollows of it
+  std::vector<uint32_t> part_of_;                      ///< per triangle of the input
   std::vector<uint8_t> is_cut_;                        ///< per triangle of the input
   std::vector<std::array<WorldPoint, 3>> touching_;
 };
