@@ -21,6 +21,8 @@ inline WorldPoint as_world(Vec64 v) { return {double(v.x), double(v.y), double(v
 using Ends = std::array<uint32_t, 2>;
 constexpr Ends kNoEnds = {kNoFace, kNoFace};
 inline Ends ends_of(uint32_t a, uint32_t b) { return a < b ? Ends{a, b} : Ends{b, a}; }
+/// In the order of the two, and quicker to compare.
+inline uint64_t key_of(const std::array<uint32_t, 2>& two) { return uint64_t(two[0]) << 32 | two[1]; }
 /// Edge i of a face runs from corner i to the next one.
 inline Ends edge_of(const Corners& f, size_t i) { return ends_of(f[i], f[(i + 1) % 3]); }
 inline bool has_corner(const Corners& f, uint32_t v) { return f[0] == v || f[1] == v || f[2] == v; }

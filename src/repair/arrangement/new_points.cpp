@@ -11,7 +11,9 @@
 namespace isoshell::repair {
 namespace {
 
-auto key_of(const Contact& c) { return std::tie(c.edge, c.face, c.point, c.pair); }
+auto order_of(const Contact& c) {
+  return std::tuple(key_of(c.edge[0]), key_of(c.edge[1]), key_of({c.face, c.point}), key_of(c.pair));
+}
 bool is_same_place(const Contact& a, const Contact& b) {
   return a.edge == b.edge && a.face == b.face && a.point == b.point;
 }
@@ -55,7 +57,8 @@ class NearCorners {
 }  // namespace
 
 void number_new_points(LatticeFaces& faces, std::vector<Contact>& contacts) {
-  std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return key_of(a) < key_of(b); });
+  std::sort(contacts.begin(), contacts.end(),
+            [](const Contact& a, const Contact& b) { return order_of(a) < order_of(b); });
   const uint32_t first_new = uint32_t(faces.point.size());
   std::vector<uint32_t> near;
   const Contact* last = nullptr;
@@ -140,7 +143,8 @@ ContactPoints::ContactPoints(const LatticeFaces& faces, const std::vector<Contac
     for (const Ends& e : c.edge) {
       if (e == kNoEnds || c.point == e[0] || c.point == e[1]) continue;
       const WorldPoint a = as_world(faces.point[e[0]]);
-      on_edge_.push_back({e, dot(as_world(faces.point[c.point]) - a, as_world(faces.point[e[1]]) - a), c.point});
+      on_edge_.push_back(
+          {key_of(e), dot(as_world(faces.point[c.point]) - a, as_world(faces.point[e[1]]) - a), c.point});
       is_end_[e[0]] = is_end_[e[1]] = 1;
     }
   std::sort(on_edge_.begin(), on_edge_.end(), [&](const OnEdge& a, const OnEdge& b) { return key(a) < key(b); });
@@ -157,9 +161,9 @@ ContactPoints::ContactPoints(const LatticeFaces& faces, const std::vector<Contac
 std::vector<uint32_t> ContactPoints::on_edge(uint32_t from, uint32_t to) const {
   std::vector<uint32_t> found;
   if (!is_end_[from] || !is_end_[to]) return found;
-  const Ends edge = ends_of(from, to);
-  auto o = std::lower_bound(on_edge_.begin(), on_edge_.end(), edge,
-                            [](const OnEdge& a, const Ends& e) { return a.edge < e; });
+  const uint64_t edge = key_of(ends_of(from, to));
+  auto o =
+      std::lower_bound(on_edge_.begin(), on_edge_.end(), edge, [](const OnEdge& a, uint64_t e) { return a.edge < e; });
   for (; o != on_edge_.end() && o->edge == edge; ++o) found.push_back(o->point);
   if (from > to) std::reverse(found.begin(), found.end());
   return found;
@@ -172,21 +176,23 @@ std::vector<uint32_t> ContactPoints::inside(uint32_t face) const {
   return found;
 }
 
-bool ContactPoints::has(uint32_t face, uint32_t point) const {
-  const Corners& c = faces_.face[face];
-  if (has_corner(c, point)) return true;
-  for (size_t i = 0; i < 3; ++i) {
-    const std::vector<uint32_t> there = on_edge(c[i], c[(i + 1) % 3]);
-    if (std::find(there.begin(), there.end(), point) != there.end()) return true;
-  }
-  return false;
-}
-
 void ContactPoints::add_inside(std::vector<std::array<uint32_t, 2>> face_and_point) {
   std::sort(face_and_point.begin(), face_and_point.end());
   face_and_point.erase(std::unique(face_and_point.begin(), face_and_point.end()), face_and_point.end());
-  for (const auto& i : face_and_point)
-    if (!has(i[0], i[1])) inside_.push_back(i);
+  uint32_t face = kNoFace;
+  std::vector<uint32_t> border;  // of that face
+  for (const auto& i : face_and_point) {
+    if (i[0] != face) {
+      face = i[0];
+      const Corners& c = faces_.face[face];
+      border.assign(c.begin(), c.end());
+      for (size_t k = 0; k < 3; ++k) {
+        const std::vector<uint32_t> there = on_edge(c[k], c[(k + 1) % 3]);
+        border.insert(border.end(), there.begin(), there.end());
+      }
+    }
+    if (std::find(border.begin(), border.end(), i[1]) == border.end()) inside_.push_back(i);
+  }
   std::sort(inside_.begin(), inside_.end());
   inside_.erase(std::unique(inside_.begin(), inside_.end()), inside_.end());
 }

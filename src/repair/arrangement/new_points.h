@@ -28,10 +28,8 @@ class ContactPoints {
   std::vector<uint32_t> touched_faces() const;
 
  private:
-  bool has(uint32_t face, uint32_t point) const;
-
   struct OnEdge {
-    Ends edge;
+    uint64_t edge;  ///< its key
     double along;
     uint32_t point;
   };

@@ -2,6 +2,7 @@
 #include "repair/arrangement/shared_lines.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "geometry/world_vector.h"
 
@@ -12,7 +13,9 @@ struct PairPoint {
   std::array<uint32_t, 2> pair;
   uint32_t point;
 
-  bool operator<(const PairPoint& o) const { return pair != o.pair ? pair < o.pair : point < o.point; }
+  bool operator<(const PairPoint& o) const {
+    return key_of(pair) != key_of(o.pair) ? key_of(pair) < key_of(o.pair) : point < o.point;
+  }
   bool operator==(const PairPoint& o) const { return pair == o.pair && point == o.point; }
 };
 
@@ -22,10 +25,11 @@ class LineFinder {
 
   /// `common`: the points of both, ascending.
   void add_pair(const std::array<uint32_t, 2>& pair, const std::vector<uint32_t>& common) {
+    const std::array<const Sides*, 2> sides = {&sides_of(pair[0]), &sides_of(pair[1])};
     for (size_t s = 0; s < 2; ++s)
-      for (size_t i = 0; i < 3; ++i) add_edge(pair[s], i, pair[1 - s], common);
+      for (const std::vector<uint32_t>& side : *sides[s]) add_edge(side, pair[1 - s], *sides[1 - s], common);
     const std::vector<uint32_t> line = as_line(common);
-    for (const uint32_t f : pair) add_chain(f, line);
+    for (size_t s = 0; s < 2; ++s) add_chain(pair[s], *sides[s], line);
   }
 
   std::vector<FaceLine> take() {
@@ -36,32 +40,37 @@ class LineFinder {
   }
 
  private:
-  /// What lies in the other between the first and the last common point of an edge.
-  void add_edge(uint32_t f, size_t i, uint32_t other, const std::vector<uint32_t>& common) {
-    std::vector<uint32_t> chain = side_of(f, i);
-    const auto is_common = [&](uint32_t v) { return std::binary_search(common.begin(), common.end(), v); };
-    const auto first = std::find_if(chain.begin(), chain.end(), is_common);
-    const auto last = std::find_if(chain.rbegin(), chain.rend(), is_common).base();
-    if (first == chain.end() || last - first < 2) return;
-    add_chain(other, {first, last});
-  }
-  std::vector<uint32_t> side_of(uint32_t f, size_t i) const {
+  /// The points of a face's edges, from end to end.
+  using Sides = std::array<std::vector<uint32_t>, 3>;
+
+  const Sides& sides_of(uint32_t f) {
+    const auto [found, is_new] = sides_.try_emplace(f);
+    if (!is_new) return found->second;
     const Corners& c = faces_.face[f];
-    std::vector<uint32_t> chain = points_.on_edge(c[i], c[(i + 1) % 3]);
-    chain.insert(chain.begin(), c[i]);
-    chain.push_back(c[(i + 1) % 3]);
-    return chain;
+    for (size_t i = 0; i < 3; ++i) {
+      std::vector<uint32_t>& side = found->second[i];
+      side = points_.on_edge(c[i], c[(i + 1) % 3]);
+      side.insert(side.begin(), c[i]);
+      side.push_back(c[(i + 1) % 3]);
+    }
+    return found->second;
   }
 
-  void add_chain(uint32_t f, const std::vector<uint32_t>& chain) {
-    std::array<std::vector<uint32_t>, 3> sides;
-    for (size_t i = 0; i < 3; ++i) {
-      sides[i] = side_of(f, i);
-      std::sort(sides[i].begin(), sides[i].end());
-    }
+  /// What lies in the other between the first and the last common point of an edge.
+  void add_edge(const std::vector<uint32_t>& side, uint32_t other, const Sides& of_other,
+                const std::vector<uint32_t>& common) {
+    const auto is_common = [&](uint32_t v) { return std::binary_search(common.begin(), common.end(), v); };
+    const auto first = std::find_if(side.begin(), side.end(), is_common);
+    const auto last = std::find_if(side.rbegin(), side.rend(), is_common).base();
+    if (first == side.end() || last - first < 2) return;
+    add_chain(other, of_other, {first, last});
+  }
+
+  void add_chain(uint32_t f, const Sides& sides, const std::vector<uint32_t>& chain) {
     const auto are_on_side = [&](uint32_t u, uint32_t v) {
       return std::any_of(sides.begin(), sides.end(), [&](const std::vector<uint32_t>& side) {
-        return std::binary_search(side.begin(), side.end(), u) && std::binary_search(side.begin(), side.end(), v);
+        return std::find(side.begin(), side.end(), u) != side.end() &&
+               std::find(side.begin(), side.end(), v) != side.end();
       });
     };
     if (chain.size() < 2 || are_on_side(chain.front(), chain.back())) return;
@@ -96,6 +105,7 @@ class LineFinder {
 
   const LatticeFaces& faces_;
   ContactPoints& points_;
+  std::unordered_map<uint32_t, Sides> sides_;  ///< of the faces that were asked for
   std::vector<FaceLine> lines_;
   std::vector<std::array<uint32_t, 2>> inside_;
 };
