@@ -63,6 +63,7 @@ class PlaneTriangulation {
   bool insert_line(uint32_t a, uint32_t b) {
     std::deque<std::array<uint32_t, 2>> crossed;
     if (!find_crossed(a, b, crossed)) return false;
+    is_delaunay_ = is_delaunay_ && crossed.empty();
     size_t in_vain = 0;
     while (!crossed.empty()) {
       const auto [r, l] = crossed.front();
@@ -83,7 +84,7 @@ class PlaneTriangulation {
 
   /// Where lines keep an edge from being flipped, it stays.
   void flip_rest() {
-    for (bool is_changed = true; is_changed;) {
+    for (bool is_changed = !is_delaunay_; is_changed;) {
       is_changed = false;
       for (uint32_t t = 0; t < triangle_.size(); ++t)
         for (int i = 0; i < 3; ++i) {
@@ -266,6 +267,7 @@ class PlaneTriangulation {
 
   std::vector<PlanePoint> point_;
   uint32_t count_, last_ = 0;
+  bool is_delaunay_ = true;  ///< no line has changed that
   std::vector<PlaneTriangle> triangle_;
   std::vector<uint32_t> triangle_of_;  ///< per point one of its triangles
 };
