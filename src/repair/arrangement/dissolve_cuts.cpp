@@ -26,15 +26,6 @@ struct BorderEdge {
   bool operator<(const BorderEdge& o) const { return from != o.from ? from < o.from : to < o.to; }
 };
 
-/// Along a direction; none at first.
-struct Range {
-  double least = HUGE_VAL, most = -HUGE_VAL;
-
-  void add(double x) { least = std::min(least, x), most = std::max(most, x); }
-  void add(const Range& o) { add(o.least), add(o.most); }
-  double length() const { return most - least; }
-};
-
 class Dissolver {
  public:
   Dissolver(PiecedFaces& faces, const std::vector<uint8_t>& is_kept, const WorldBox& box, const Context& context)
@@ -113,7 +104,8 @@ class Dissolver {
     if (dot(m, n) < kNearlyOne) return false;
     const auto is_thin = [&](const WorldPoint& normal) {
       Range range = reach_along(normal, s);
-      range.add(reach_along(normal, t));
+      const Range other = reach_along(normal, t);
+      range.add(other.least), range.add(other.most);
       return range.length() <= kRoundedSteps;
     };
     return is_thin(m) || is_thin(n);

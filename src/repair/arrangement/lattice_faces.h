@@ -1,7 +1,9 @@
 // Faces on a lattice of whole steps, and where they come near to each other.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +18,15 @@ namespace isoshell::repair {
 using StepPoint = PointQ8;
 inline WorldPoint as_world(StepPoint p) { return {double(p.x), double(p.y), double(p.z)}; }
 inline WorldPoint as_world(Vec64 v) { return {double(v.x), double(v.y), double(v.z)}; }
+
+/// Along a direction; none at first.
+struct Range {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+
+  void add(double x) { least = std::min(least, x), most = std::max(most, x); }
+  double length() const { return most - least; }
+  bool is_apart(const Range& o, double by) const { return least > o.most + by || o.least > most + by; }
+};
 
 /// Ends of an edge, smaller one first.
 using Ends = std::array<uint32_t, 2>;

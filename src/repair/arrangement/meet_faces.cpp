@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/box.h"
 #include "geometry/segment.h"
 #include "voxel/intersect.h"
 
@@ -25,14 +24,6 @@ HeightPlane plane_through(const WorldPoint& p, const WorldPoint& normal) {
   const WorldPoint unit = (1 / size) * normal;
   return {unit, dot(unit, p)};
 }
-
-/// A range along a direction; none at first.
-struct Range {
-  double least = HUGE_VAL, most = -HUGE_VAL;
-
-  void add(double x) { least = std::min(least, x), most = std::max(most, x); }
-  bool is_apart(const Range& o, double by) const { return least > o.most + by || o.least > most + by; }
-};
 
 /// Whether planes tell that two faces are farther than `reach` from each other, but at corners that they share.
 class Separation {
@@ -242,17 +233,9 @@ class FacePair {
   }
 
   void add_edges() {
-    std::array<std::array<BoxQ8, 3>, 2> box;
-    for (size_t s = 0; s < 2; ++s)
-      for (size_t i = 0; i < 3; ++i) {
-        const StepPoint &a = at(corner_[s][i]), &b = at(corner_[s][(i + 1) % 3]);
-        box[s][i] = {smallest_of(a, b), largest_of(a, b)};
-        if (s == 0) box[s][i] = widened(box[s][i], int32_t(faces_.reach_steps) + 1);
-      }
     const bool do_meet = !faces_.leaves_near_edges || triangles_intersect(corners_of(0), corners_of(1));
     for (size_t i = 0; i < 3; ++i)
       for (size_t k = 0; k < 3; ++k) {
-        if (!boxes_meet(box[0][i], box[1][k])) continue;
         Ends d = edge_of(corner_[0], i), e = edge_of(corner_[1], k);
         if (d[0] == e[0] || d[0] == e[1] || d[1] == e[0] || d[1] == e[1]) continue;
         if (e < d) std::swap(d, e);
