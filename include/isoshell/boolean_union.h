@@ -16,6 +16,7 @@ struct UnionOptions {
   bool outer_only = false;     ///< everything that is enclosed is solid: hollows, and rooms between walls
   bool keeps_open = false;     ///< components with borders stay as they are, if they are apart from the others
   double sheet_gap_world = 0;  ///< between sheets of the result that would share an edge
+  bool own_faces = false;      ///< a component is cut along itself, too, where its own faces meet
 };
 
 /// What was found among the components of a surface, and changed.

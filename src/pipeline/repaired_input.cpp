@@ -12,12 +12,11 @@
 #include "isoshell/boolean_union.h"
 #include "isoshell/readable.h"
 #include "pipeline/grid/timed.h"
+#include "pipeline/patches/own_faces.h"
 #include "repair/holes/open_soup.h"
 
 namespace isoshell {
 namespace {
-
-constexpr double kSheetGapVox = 1. / 64;  // four steps of the lattice: rounding leaves sheets apart
 
 /// Borders that are kept are those wider than the gaps that were asked to be closed; where nothing was, those of no
 /// holes.
@@ -80,7 +79,8 @@ class Repair {
     const bool is_one = before.components < 2 && before.genus >= 0 && measured.dirt.nonmanifold_edges == 0;
     if (is_one || (before.boundary_loops > 0 && !keeps_open)) return false;
     const Plan plan = plan_of(plan_.options, before, bounding_box(soup()));
-    const UnionOptions options{plan.options.outer_only, keeps_open, plan.first_voxel_size_world() * kSheetGapVox};
+    const UnionOptions options{plan.options.outer_only, keeps_open, plan.first_voxel_size_world() * kSheetGapVox,
+                               false};
     UnionReport& report = report_.input.united;
     UnitedSoup united =
         timed(report_, "unite", context_, [&] { return boolean_union(soup(), options, report, context_); });

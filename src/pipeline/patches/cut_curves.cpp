@@ -20,8 +20,7 @@
 namespace isoshell {
 namespace {
 
-constexpr double kTooManyOnCurves = 0.9;  ///< of the vertices: what is left is too few for the surface between them
-constexpr double kMostOnCurves = 0.5;     ///< where creases are left out
+constexpr double kMostOnCurves = 0.5;  ///< of the vertices, where creases are left out
 
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
 double six_volumes(const FeatureMesh& mesh) {
@@ -168,7 +167,6 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
   if (before) how.before = before->carried;
   const bool lengths_decide = how.requested.vary() && field_decides(p.options);
   if (!lengths_decide && (how.requested.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
-  const double most = kTooManyOnCurves * double(seeds);
   SharedCut cut;
   const auto cut_along_all = [&] {
     failure_reason([&] {
@@ -176,12 +174,13 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
       return std::string();
     });
   };
-  if (how.vertices == 0 || least_vertices_on(network, source.found, how.edge_length_world) <= most) cut_along_all();
+  if (how.vertices == 0 || least_vertices_on(network, source.found, how.edge_length_world) <= double(seeds))
+    cut_along_all();
   if (!cut && !how.before.empty()) {  // curves may keep more seeds than there is room for
     how.before.clear();
     cut_along_all();
   }
-  if (cut && (how.vertices == 0 || double(report.features.vertices) <= most)) return cut;
+  if (cut) return cut;
   return cut_along_fewer(plan, network, std::move(source), report, context);
 }
 

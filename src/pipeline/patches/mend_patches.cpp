@@ -99,7 +99,9 @@ std::optional<JoinedPatches> simplify_instead(const PreparedSurface& p, const Cu
       report.optimize.self_intersections = int64_t(pairs.size());
       return crossings.wrong_of(joined->mesh, pairs).empty();
     };
-    std::optional<JoinedPatches> joined = mend_patches(cut, made, wrong.is_wrong, options, context);
+    std::optional<JoinedPatches> joined;
+    if (std::find(wrong.is_wrong.begin(), wrong.is_wrong.end(), 1) != wrong.is_wrong.end())
+      joined = mend_patches(cut, made, wrong.is_wrong, options, context);
     if (!is_mesh(joined)) {
       if (!is_nearly_embedded(cut, crossings)) return {};
       joined = widened(coarsen_walls(cut, all_triangles_of(cut), options, context), context);

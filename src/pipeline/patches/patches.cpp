@@ -29,6 +29,7 @@
 #include "pipeline/patches/given_lines.h"
 #include "pipeline/patches/mend_patches.h"
 #include "pipeline/patches/mesh_patches.h"
+#include "pipeline/patches/own_faces.h"
 #include "pipeline/patches/part_fans.h"
 #include "pipeline/patches/sheet_when_needed.h"
 #include "pipeline/sheet/crease_search.h"
@@ -163,13 +164,19 @@ MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const Cu
   out.why_not = failure_reason([&]() -> std::string {
     WrongPatches wrong = mesh_patches(p, *cut, made, options, report, context);
     if (!wrong.what.empty() && options.previous) return wrong.what;
-    if (wrong.what.empty())
-      out.joined =
-          timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(options), context); });
-    else if (auto simplified = simplify_instead(p, *cut, made, wrong, options, report, context))
-      out.joined = std::move(*simplified);
-    else
-      return wrong.what;
+    if (wrong.what.empty()) {
+      const JoinOptions join = join_options(options);
+      out.joined = timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join, context); });
+      const int64_t vertices = out.joined.mesh.position.size();
+      if (vertices > join.vertices && !CountReport{join.vertices, vertices, {}}.is_near())
+        wrong.what = "curves take too many vertices for their edges to be as long as others";
+    }
+    if (!wrong.what.empty()) {
+      if (auto simplified = simplify_instead(p, *cut, made, wrong, options, report, context))
+        out.joined = std::move(*simplified);
+      else if (out.joined.mesh.position.size() == 0)
+        return wrong.what;
+    }
     out.mesh = to_world(out.joined.mesh, p.surface.frame);
     out.mesh.features = std::move(out.joined.features);
     part_fans(out.mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
@@ -228,8 +235,13 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, RemeshRepor
     std::vector<std::array<WorldPoint, 2>> kept = seams.edges;
     kept.insert(kept.end(), source.interfaces.begin(), source.interfaces.end());
     SearchedSurface searched = searched_surface(p, kept, context);
-    FeatureMesh& mesh = searched.mesh;
     CurveOptions curves = curve_options(options, p.previous.get(), edge_world);
+    if (!searched.creases)
+      searched.creases = run_with_threads(context, [&] { return find_creases(searched.mesh, curves); });
+    const bool is_closed = p.surface.topology.closed && p.surface.topology.oriented;
+    if (is_closed && seams.edges.empty() && !lines && !searched.creases->curve_edges.empty())
+      unite_own_faces(searched, p, report, context);
+    FeatureMesh& mesh = searched.mesh;
     curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);
     if (curves.mode != CreaseMode::off) curves.interfaces = vertices_of(source.interfaces, mesh, p.surface.frame);
     if (lines) {

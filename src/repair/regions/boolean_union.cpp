@@ -146,7 +146,7 @@ class Union {
       }
       solid.soup.triangles.push_back(corner);
     }
-    if (p.shape == PartShape::branching) return outer_faces(arranged(solid, 0), solid, {});
+    if (p.shape == PartShape::branching || options_.own_faces) return outer_faces(arranged(solid, 0), solid, {});
     return solid;
   }
 
