@@ -59,6 +59,13 @@ double CutLookup::cosine(uint32_t home, uint32_t patch, const WorldPoint& unit) 
   return best;
 }
 
+double CutLookup::cosine(const EditableMesh& mesh, const RegionTriangle& t) const {
+  const WorldPoint unit = normalised(mesh.normal(t));
+  double least = 1;
+  for (const uint32_t v : t.corner) least = std::min(least, cosine(mesh.vertex(v).home, t.patch, unit));
+  return least;
+}
+
 uint32_t CutLookup::nearest_from(uint32_t start, const WorldPoint& near) const {
   const SurfaceMesh& surface = cut_->surface;
   uint32_t at = start;

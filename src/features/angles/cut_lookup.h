@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "features/cutting/cut_surface.h"
+#include "features/mesh/editable_mesh.h"
 #include "geometry/world_vector.h"
 
 namespace isoshell {
@@ -23,6 +24,8 @@ class CutLookup {
   uint32_t copy_in(uint32_t home, uint32_t patch) const;
   /// Between a unit vector and the normal of the surface of a patch; of several fans there the one that fits best.
   double cosine(uint32_t home, uint32_t patch, const WorldPoint& unit) const;
+  /// Between the normal of a triangle and those of the surface at its corners, the least.
+  double cosine(const EditableMesh& mesh, const RegionTriangle& t) const;
   /// Goes from a vertex to neighbours on the surface as long as these are nearer to a point.
   uint32_t nearest_from(uint32_t start, const WorldPoint& near) const;
   /// How far a curve leaves the chord between two of its places, to within a small part of an edge. Cost: a look at the

@@ -26,14 +26,13 @@ std::vector<uint64_t> PatchMesh::edges_by_length() const {
   using Kind = RegionVertex::Kind;
   const EdgeLengths& lengths = cut_->surface.lengths;
   std::vector<std::pair<double, uint64_t>> out;
-  for (const RegionTriangle& t : triangles_)
+  for (const RegionTriangle& t : triangles())
     for (size_t i = 0; i < 3; ++i) {
       const uint32_t u = t.corner[i], v = t.corner[(i + 1) % 3];
-      if (u >= v || vertices_[u].kind != Kind::free || vertices_[v].kind != Kind::free) continue;
+      if (u >= v || vertex(u).kind != Kind::free || vertex(v).kind != Kind::free) continue;
       const double aimed_at =
-          lengths.at.empty() ? 1 : double(lengths.at[vertices_[u].home]) + double(lengths.at[vertices_[v].home]);
-      out.push_back(
-          {distance_sq(vertices_[u].position, vertices_[v].position) / (aimed_at * aimed_at), edge_key(u, v)});
+          lengths.at.empty() ? 1 : double(lengths.at[vertex(u).home]) + double(lengths.at[vertex(v).home]);
+      out.push_back({distance_sq(vertex(u).position, vertex(v).position) / (aimed_at * aimed_at), edge_key(u, v)});
     }
   std::sort(out.begin(), out.end());
   std::vector<uint64_t> edges;
@@ -47,7 +46,7 @@ std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
   for (const Change& change : {Change{what, 0, 1}, Change{what, 1, 0}}) {
     MeshRegion there = start;
     there.mark_all_tried();
-    if (!make(there, change)) continue;
+    if (!make_change(there, change)) continue;
     there.flip_edges();
     const double most = start.cost() + kMostPerCount;
     if (there.cost() > most + kMostAtFirst) continue;
@@ -60,7 +59,7 @@ std::optional<MeshRegion> PatchMesh::recounted(const MeshRegion& start) const {
 /// Whether an edge is there, and takes part in a pass.
 bool PatchMesh::may_recount(uint64_t edge, size_t pass) const {
   const auto u = uint32_t(edge >> 32), v = uint32_t(edge);
-  const bool has_many = surplus() > 0 && around_[u].size() + around_[v].size() > kFewEdges + pass;
+  const bool has_many = surplus() > 0 && around(u).size() + around(v).size() > kFewEdges + pass;
   return is_edge(u, v) && !(has_many && pass < kPassesOfFew);
 }
 
@@ -88,7 +87,7 @@ void PatchMesh::recount_edges(const std::vector<uint64_t>& edges, size_t pass, i
     const size_t count = std::min(ahead, edges.size() - begin);
     std::vector<Recount> recounts(count);
     ++clock_;
-    replaced_at_.resize(vertices_.size(), 0);
+    replaced_at_.resize(vertices().size(), 0);
     for_each_index(size_t(0), count, [&](size_t i) {
       if (may_recount(edges[begin + i], pass)) recounts[i] = recount_at(edges[begin + i]);
     });
@@ -103,7 +102,7 @@ void PatchMesh::recount_edges(const std::vector<uint64_t>& edges, size_t pass, i
 }
 
 void PatchMesh::meet_count(const Context& context) {
-  if (surplus() != 0) fill_space();
+  if (surplus() != 0) keep_apart(cut_->longest_edge_q8);
   for (size_t pass = 0; surplus() != 0 && pass < kMostPasses; ++pass) {
     const int64_t before = surplus();
     std::vector<uint64_t> edges = edges_by_length();

@@ -35,116 +35,88 @@ void sort_unique(std::vector<T>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-}  // namespace
+/// Curves by their ends where they are one segment between corners, ascending: there is one such at most.
+using WholeCurves = std::vector<std::pair<uint64_t, uint32_t>>;
 
-PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options)
-    : cut_(&cut), lookup_(std::make_shared<CutLookup>(cut)), options_(options) {
-  const OnHost<SeedSet> seeds(made.seeds);
-  const OnHost<DualMesh> open(made.mesh);
-  const JoinedMesh joined = join_patches(*open, seeds->fixed);
-  vertices_.resize(size_t(joined.mesh.position.size()));
-  around_.resize(vertices_.size());
+WholeCurves whole_curves(const CutSurface& cut) {
+  WholeCurves ends;
   for (uint32_t c = 0; c < cut.curves.size(); ++c)
     if (const CutCurve& curve = cut.curves[c]; !curve.is_loop && curve.seeds.size() == 2)
-      ends_.push_back({edge_key(curve.place.front(), curve.place.back()), c});
-  std::sort(ends_.begin(), ends_.end());
-  list_vertices(*seeds, joined);
-  list_triangles(*open, *seeds, joined);
-  is_hopeless_.assign(triangles_.size(), 0);
-  count_ = int64_t(vertices_.size());
-  tries_ = options_.tries_per_vertex * std::max(count_, kFewTries);
-}
-
-PatchMesh::PatchMesh(const CutSurface& cut, std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles,
-                     const JoinOptions& options)
-    : cut_(&cut),
-      lookup_(std::make_shared<CutLookup>(cut)),
-      vertices_(std::move(vertices)),
-      triangles_(std::move(triangles)),
-      is_hopeless_(triangles_.size(), 0),
-      around_(vertices_.size()),
-      options_(options) {
-  for (uint32_t t = 0; t < triangles_.size(); ++t)
-    if (!triangles_[t].is_gone())
-      for (const uint32_t v : triangles_[t].corner) around_[v].push_back(t);
-  for (uint32_t v = 0; v < vertices_.size(); ++v) vertices_[v].number = v;
-  count_ =
-      std::count_if(around_.begin(), around_.end(), [](const auto& triangles_at) { return !triangles_at.empty(); });
-  tries_ = options_.tries_per_vertex * std::max(count_, kFewTries);
-}
-
-void PatchMesh::list_vertices(const SeedSet& seeds, const JoinedMesh& joined) {
-  std::vector<std::pair<uint32_t, size_t>> on_curve(cut_->copies_first.size() - 1, {kNone, 0});  // per place
-  for (uint32_t c = 0; c < cut_->curves.size(); ++c)
-    for (size_t i = 0; i < cut_->curves[c].place.size(); ++i) on_curve[cut_->curves[c].place[i]] = {c, i};
-  for (int64_t s = seeds.size() - 1; s >= 0; --s) {  // of copies the first counts
-    RegionVertex& v = vertices_[joined.vertex_of[s]];
-    const PointQ8 p = joined.mesh.position[joined.vertex_of[s]];
-    v.position = {double(p.x), double(p.y), double(p.z)};
-    v.home = seeds.home[s];
-    v.number = joined.vertex_of[s];
-    const uint32_t place = s < seeds.fixed.count ? cut_->place[v.home] : kNone;
-    if (place == kNone) continue;
-    v.kind = place < cut_->corner_count ? RegionVertex::Kind::corner : RegionVertex::Kind::on_curve;
-    std::tie(v.curve, v.at) = on_curve[place];
-  }
-}
-
-void PatchMesh::list_triangles(const DualMesh& open, const SeedSet& seeds, const JoinedMesh& joined) {
-  MeshTriangles corners;  // of the open mesh
-  for (const TriangleIndices& i : open.triangles) {
-    RegionTriangle made;
-    made.corner = {joined.vertex_of[i.a], joined.vertex_of[i.b], joined.vertex_of[i.c]};
-    made.curve = {kNone, kNone, kNone};
-    made.patch = cut_->surface.patch.empty() ? 0 : cut_->surface.patch[seeds.home[i.a]];
-    for (const uint32_t v : made.corner) around_[v].push_back(uint32_t(triangles_.size()));
-    triangles_.push_back(made);
-    corners.push_back({i.a, i.b, i.c});
-  }
-  for_each_edge(find_edge_sides(corners, size_t(open.position.size())),
-                [&](uint32_t, uint32_t, View<const EdgeSide> on_edge) {
-                  if (on_edge.size > 1) return;
-                  RegionTriangle& t = triangles_[on_edge[0].half_edge / 3];
-                  const size_t k = on_edge[0].half_edge % 3;
-                  t.curve[k] = curve_between(t.corner[k], t.corner[(k + 1) % 3]);
-                });
+      ends.push_back({edge_key(curve.place.front(), curve.place.back()), c});
+  std::sort(ends.begin(), ends.end());
+  return ends;
 }
 
 /// That two vertices follow each other on.
-uint32_t PatchMesh::curve_between(uint32_t u, uint32_t v) const {
-  const RegionVertex &a = vertices_[u], &b = vertices_[v];
+uint32_t curve_of(const CutSurface& cut, const WholeCurves& ends, const RegionVertex& a, const RegionVertex& b) {
   if (a.kind == RegionVertex::Kind::on_curve) return a.curve;
   if (b.kind == RegionVertex::Kind::on_curve) return b.curve;
-  return whole_curve(cut_->place[a.home], cut_->place[b.home]);
+  const uint64_t key = edge_key(cut.place[a.home], cut.place[b.home]);
+  const auto found = std::lower_bound(ends.begin(), ends.end(), std::make_pair(key, uint32_t(0)));
+  return found != ends.end() && found->first == key ? found->second : 0;
 }
 
-/// From one corner to another in one segment: there is one such at most.
-uint32_t PatchMesh::whole_curve(uint32_t from, uint32_t to) const {
-  const auto found = std::lower_bound(ends_.begin(), ends_.end(), std::make_pair(edge_key(from, to), uint32_t(0)));
-  return found != ends_.end() && found->first == edge_key(from, to) ? found->second : 0;
+std::vector<RegionVertex> vertices_of(const CutSurface& cut, const SeedSet& seeds, const JoinedMesh& joined) {
+  std::vector<RegionVertex> vertices(size_t(joined.mesh.position.size()));
+  std::vector<std::pair<uint32_t, size_t>> on_curve(cut.copies_first.size() - 1, {kNone, 0});  // per place
+  for (uint32_t c = 0; c < cut.curves.size(); ++c)
+    for (size_t i = 0; i < cut.curves[c].place.size(); ++i) on_curve[cut.curves[c].place[i]] = {c, i};
+  for (int64_t s = seeds.size() - 1; s >= 0; --s) {  // of copies the first counts
+    RegionVertex& v = vertices[joined.vertex_of[s]];
+    const PointQ8 p = joined.mesh.position[joined.vertex_of[s]];
+    v.position = {double(p.x), double(p.y), double(p.z)};
+    v.home = seeds.home[s];
+    const uint32_t place = s < seeds.fixed.count ? cut.place[v.home] : kNone;
+    if (place == kNone) continue;
+    v.kind = place < cut.corner_count ? RegionVertex::Kind::corner : RegionVertex::Kind::on_curve;
+    std::tie(v.curve, v.at) = on_curve[place];
+  }
+  return vertices;
 }
 
-double PatchMesh::sine_of(uint32_t triangle) const {
-  const RegionTriangle& t = triangles_[triangle];
-  if (t.is_gone()) return 1;
-  return smallest_sine(vertices_[t.corner[0]].position, vertices_[t.corner[1]].position,
-                       vertices_[t.corner[2]].position);
+/// The borders of the open mesh are on curves.
+EditableMesh joined_mesh(const CutSurface& cut, const SeedSet& seeds, const DualMesh& open) {
+  const JoinedMesh joined = join_patches(open, seeds.fixed);
+  std::vector<RegionVertex> vertices = vertices_of(cut, seeds, joined);
+  std::vector<RegionTriangle> triangles;
+  MeshTriangles corners;  // of the open mesh
+  for (const TriangleIndices& i : open.triangles) {
+    triangles.push_back({{joined.vertex_of[i.a], joined.vertex_of[i.b], joined.vertex_of[i.c]},
+                         {kNone, kNone, kNone},
+                         cut.surface.patch.empty() ? 0 : cut.surface.patch[seeds.home[i.a]]});
+    corners.push_back({i.a, i.b, i.c});
+  }
+  const WholeCurves ends = whole_curves(cut);
+  for_each_edge(find_edge_sides(corners, size_t(open.position.size())),
+                [&](uint32_t, uint32_t, View<const EdgeSide> on_edge) {
+                  if (on_edge.size > 1) return;
+                  RegionTriangle& t = triangles[on_edge[0].half_edge / 3];
+                  const size_t k = on_edge[0].half_edge % 3;
+                  t.curve[k] = curve_of(cut, ends, vertices[t.corner[k]], vertices[t.corner[(k + 1) % 3]]);
+                });
+  return {std::move(vertices), std::move(triangles), EditableMesh::Size::many};
 }
 
-bool PatchMesh::is_edge(uint32_t u, uint32_t v) const {
-  return std::any_of(around_[u].begin(), around_[u].end(), [&](uint32_t t) {
-    const auto& c = triangles_[t].corner;
-    return std::find(c.begin(), c.end(), v) != c.end();
-  });
-}
+}  // namespace
+
+PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options)
+    : PatchMesh(cut, joined_mesh(cut, *OnHost<SeedSet>(made.seeds), *OnHost<DualMesh>(made.mesh)), options) {}
+
+PatchMesh::PatchMesh(const CutSurface& cut, EditableMesh mesh, const JoinOptions& options)
+    : EditableMesh(std::move(mesh)),
+      cut_(&cut),
+      lookup_(std::make_shared<CutLookup>(cut)),
+      is_hopeless_(triangles().size(), 0),
+      options_(options),
+      tries_(options_.tries_per_vertex * std::max(vertex_count(), kFewTries)) {}
 
 std::vector<uint32_t> PatchMesh::poor_triangles() const {
   std::vector<std::pair<double, uint32_t>> found;
-  for (uint32_t t = 0; t < triangles_.size(); ++t)
-    if (const double sine = sine_of(t); sine < kPoorSine) found.push_back({sine, t});
+  for (uint32_t t = 0; t < triangles().size(); ++t)
+    if (const double narrow = sine(triangles()[t]); narrow < kPoorSine) found.push_back({narrow, t});
   std::sort(found.begin(), found.end());
   std::vector<uint32_t> out;
-  for (const auto& [sine, t] : found) out.push_back(t);
+  for (const auto& [narrow, t] : found) out.push_back(t);
   return out;
 }
 
@@ -152,11 +124,11 @@ std::vector<uint32_t> PatchMesh::poor_triangles() const {
 std::vector<uint32_t> PatchMesh::triangles_around(std::vector<uint32_t> vertices) const {
   std::vector<uint32_t> triangles;
   for (int ring = 0; ring < kRings; ++ring) {
-    for (const uint32_t v : vertices) triangles.insert(triangles.end(), around_[v].begin(), around_[v].end());
+    for (const uint32_t v : vertices) triangles.insert(triangles.end(), around(v).begin(), around(v).end());
     sort_unique(triangles);
     vertices.clear();
     for (const uint32_t t : triangles)
-      vertices.insert(vertices.end(), triangles_[t].corner.begin(), triangles_[t].corner.end());
+      vertices.insert(vertices.end(), this->triangles()[t].corner.begin(), this->triangles()[t].corner.end());
     sort_unique(vertices);
   }
   return triangles;
@@ -166,20 +138,22 @@ std::vector<uint32_t> PatchMesh::triangles_around(std::vector<uint32_t> vertices
 PatchMesh::Cutout PatchMesh::cut_out(const std::vector<uint32_t>& vertices,
                                      const std::vector<uint32_t>& triangles) const {
   std::vector<uint32_t> all;
-  for (const uint32_t t : triangles) all.insert(all.end(), triangles_[t].corner.begin(), triangles_[t].corner.end());
+  for (const uint32_t t : triangles)
+    all.insert(all.end(), this->triangles()[t].corner.begin(), this->triangles()[t].corner.end());
   sort_unique(all);
   std::stable_partition(all.begin(), all.end(),
                         [&](uint32_t v) { return std::find(vertices.begin(), vertices.end(), v) != vertices.end(); });
   std::vector<RegionVertex> region_vertices;
   for (const uint32_t v : all) {
-    region_vertices.push_back(vertices_[v]);
+    region_vertices.push_back(vertex(v));
     region_vertices.back().number = v;
-    region_vertices.back().is_inner =
-        std::includes(triangles.begin(), triangles.end(), around_[v].begin(), around_[v].end());
+    region_vertices.back().is_inner = std::all_of(around(v).begin(), around(v).end(), [&](uint32_t t) {
+      return std::binary_search(triangles.begin(), triangles.end(), t);
+    });
   }
   std::vector<RegionTriangle> region_triangles;
   for (const uint32_t t : triangles) {
-    region_triangles.push_back(triangles_[t]);
+    region_triangles.push_back(this->triangles()[t]);
     for (uint32_t& v : region_triangles.back().corner) v = uint32_t(std::find(all.begin(), all.end(), v) - all.begin());
   }
   return {triangles, MeshRegion(*lookup_, std::move(region_vertices), std::move(region_triangles))};
@@ -199,7 +173,7 @@ std::vector<PatchMesh::Change> PatchMesh::changes_of(const MeshRegion& region, R
   return changes;
 }
 
-bool PatchMesh::make(MeshRegion& region, const Change& change) {
+bool PatchMesh::make_change(MeshRegion& region, const Change& change) {
   const WorldPoint &a = region.vertices()[change.u].position, &b = region.vertices()[change.v].position;
   return change.what == Change::split ? region.split(change.u, change.v, 0.5 * (a + b))
                                       : region.collapse(change.u, change.v);
@@ -213,7 +187,7 @@ std::vector<MeshRegion> PatchMesh::promising(const MeshRegion& region, Reach rea
   if (reach == Reach::beyond && !are_few) return made;
   for (const Change& change : changes_of(region, reach)) {
     MeshRegion there = region;
-    if (!make(there, change)) continue;
+    if (!make_change(there, change)) continue;
     there.flip_edges();
     made.push_back(std::move(there));
   }
@@ -250,10 +224,10 @@ std::optional<MeshRegion> PatchMesh::improved(const MeshRegion& start) const {
 
 /// Takes out those, in their order, around which no triangle is that is around one before.
 std::vector<uint32_t> PatchMesh::take_apart(std::vector<uint32_t>& triangles) const {
-  std::vector<char> is_taken(triangles_.size());
+  std::vector<char> is_taken(this->triangles().size());
   std::vector<uint32_t> apart, left;
   for (const uint32_t t : triangles) {
-    const auto& corner = triangles_[t].corner;
+    const auto& corner = this->triangles()[t].corner;
     std::vector<uint32_t> around;
     if (!is_taken[t]) around = triangles_around({corner.begin(), corner.end()});
     const bool is_free =
@@ -267,10 +241,10 @@ std::vector<uint32_t> PatchMesh::take_apart(std::vector<uint32_t>& triangles) co
 }
 
 bool PatchMesh::improve(std::vector<uint32_t> triangles) {
-  fill_space();
+  keep_apart(cut_->longest_edge_q8);
   bool has_changed = false;
   while (!triangles.empty()) {
-    const auto is_done = [&](uint32_t t) { return sine_of(t) >= kPoorSine || is_hopeless_[t]; };
+    const auto is_done = [&](uint32_t t) { return sine(this->triangles()[t]) >= kPoorSine || is_hopeless_[t]; };
     triangles.erase(std::remove_if(triangles.begin(), triangles.end(), is_done), triangles.end());
     std::vector<uint32_t> apart = take_apart(triangles);
     if (int64_t(apart.size()) > tries_) {
@@ -282,7 +256,7 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles) {
     std::vector<std::optional<Cutout>> cutouts(apart.size());
     std::vector<std::optional<MeshRegion>> better(apart.size());
     for_each_index(size_t(0), apart.size(), [&](size_t i) {
-      const auto& corner = triangles_[apart[i]].corner;
+      const auto& corner = this->triangles()[apart[i]].corner;
       const std::vector<uint32_t> corners(corner.begin(), corner.end());
       cutouts[i] = cut_out(corners, triangles_around(corners));
       better[i] = improved(cutouts[i]->region);
@@ -299,23 +273,22 @@ bool PatchMesh::improve(std::vector<uint32_t> triangles) {
 }
 
 JoinedPatches PatchMesh::joined() const {
-  std::vector<uint32_t> number(vertices_.size(), kNone);
+  std::vector<uint32_t> number(vertices().size(), kNone);
   JoinedPatches out;
   out.left_alone = left_alone_;
-  out.mesh.position = Buffer<PointQ8>(count_);
-  out.home = Buffer<uint32_t>(count_);
+  out.mesh.position = Buffer<PointQ8>(vertex_count());
+  out.home = Buffer<uint32_t>(vertex_count());
   uint32_t count = 0;
-  for (size_t v = 0; v < vertices_.size(); ++v) {
-    if (around_[v].empty()) continue;
-    const WorldPoint& p = vertices_[v].position;
-    out.mesh.position[count] = {int32_t(p.x), int32_t(p.y), int32_t(p.z)};
-    out.home[count] = vertices_[v].home;
-    if (vertices_[v].kind == RegionVertex::Kind::corner) out.features.corners.push_back(count);
-    out.on_curves += vertices_[v].kind != RegionVertex::Kind::free ? 1 : 0;
+  for (uint32_t v = 0; v < vertices().size(); ++v) {
+    if (around(v).empty()) continue;
+    out.mesh.position[count] = rounded_down(at(v));
+    out.home[count] = vertex(v).home;
+    if (vertex(v).kind == RegionVertex::Kind::corner) out.features.corners.push_back(count);
+    out.on_curves += vertex(v).kind != RegionVertex::Kind::free ? 1 : 0;
     number[v] = count++;
   }
   std::vector<std::pair<std::array<uint32_t, 3>, uint32_t>> triangles;
-  for (const RegionTriangle& t : triangles_) {
+  for (const RegionTriangle& t : this->triangles()) {
     if (t.is_gone()) continue;
     std::array<uint32_t, 3> i{number[t.corner[0]], number[t.corner[1]], number[t.corner[2]]};
     for (size_t k = 0; k < 3; ++k)

@@ -8,7 +8,6 @@
 
 #include "features/angles/mesh_region.h"
 #include "isoshell/triangle_mesh.h"
-#include "measure/triangle_space.h"
 
 namespace isoshell {
 
@@ -31,25 +30,21 @@ struct JoinOptions {
 };
 
 /// Changes are made only where no triangle comes to meet another one outside of corners that they share.
-class PatchMesh {
+class PatchMesh : public EditableMesh {
  public:
   PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options);
-  /// Of the mesh that these are; vertices without triangles are none of it.
-  PatchMesh(const CutSurface& cut, std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles,
-            const JoinOptions& options);
+  /// Of such a mesh, of many triangles; vertices without triangles are none of it.
+  PatchMesh(const CutSurface& cut, EditableMesh mesh, const JoinOptions& options);
 
   /// Triangles with an angle below 30 degrees, the worst first.
   std::vector<uint32_t> poor_triangles() const;
   /// For each of the triangles the change of what is around it that leaves the least cost, where one leaves less.
   /// Result: whether anything was changed. The same for every number of threads.
   bool improve(std::vector<uint32_t> triangles);
-  int64_t surplus() const { return count_ - options_.vertices; }
+  int64_t surplus() const { return vertex_count() - options_.vertices; }
   /// Collapses or splits edges until there is no surplus, as far as that spoils no triangles.
   void meet_count(const Context& context);
 
-  /// Those that are gone have no triangles, or one corner twice.
-  const std::vector<RegionVertex>& vertices() const { return vertices_; }
-  const std::vector<RegionTriangle>& triangles() const { return triangles_; }
   JoinedPatches joined() const;
 
  private:
@@ -70,13 +65,6 @@ class PatchMesh {
   /// Which edges are split and collapsed: those at the corners of a triangle, or the others that are two rings around.
   enum class Reach { corners, beyond };
 
-  void list_vertices(const SeedSet& seeds, const JoinedMesh& joined);
-  void list_triangles(const DualMesh& open, const SeedSet& seeds, const JoinedMesh& joined);
-  uint32_t curve_between(uint32_t u, uint32_t v) const;
-  uint32_t whole_curve(uint32_t from, uint32_t to) const;
-
-  double sine_of(uint32_t triangle) const;
-  bool is_edge(uint32_t u, uint32_t v) const;
   std::vector<uint64_t> edges_by_length() const;
   bool may_recount(uint64_t edge, size_t pass) const;
   Recount recount_at(uint64_t edge) const;
@@ -86,29 +74,20 @@ class PatchMesh {
   std::vector<uint32_t> triangles_around(std::vector<uint32_t> vertices) const;
   Cutout cut_out(const std::vector<uint32_t>& vertices, const std::vector<uint32_t>& triangles) const;
   std::vector<uint32_t> take_apart(std::vector<uint32_t>& triangles) const;
-  void replace(uint32_t triangle, const RegionTriangle& by);
   bool put_back(const Cutout& cutout, const MeshRegion& region);
-  bool is_free(const Cutout& cutout, const MeshRegion& region) const;
-  CornersOfTriangle corners(const RegionTriangle& t) const;
-  void fill_space();
+  void note(const std::vector<uint32_t>& triangles);
 
   static std::vector<Change> changes_of(const MeshRegion& region, Reach reach);
-  static bool make(MeshRegion& region, const Change& change);
+  static bool make_change(MeshRegion& region, const Change& change);
   static std::vector<MeshRegion> promising(const MeshRegion& region, Reach reach);
   std::optional<MeshRegion> improved(const MeshRegion& start) const;
   std::optional<MeshRegion> recounted(const MeshRegion& start) const;
 
   const CutSurface* cut_;
   std::shared_ptr<const CutLookup> lookup_;
-  std::vector<RegionVertex> vertices_;
-  std::vector<RegionTriangle> triangles_;            ///< those that are gone have one corner twice
-  std::vector<char> is_hopeless_;                    ///< per triangle: nothing changed since it was tried
-  std::vector<std::vector<uint32_t>> around_;        ///< per vertex its triangles, ascending
-  std::vector<std::pair<uint64_t, uint32_t>> ends_;  ///< of curves that are one segment between corners, ascending
-  std::optional<TriangleSpace> space_;               ///< once something is to change
-  std::vector<uint32_t> replaced_at_;                ///< per vertex when one of its triangles was replaced last
-  uint32_t clock_ = 0;                               ///< edges looked at together so far
-  int64_t count_ = 0;
+  std::vector<char> is_hopeless_;      ///< per triangle: nothing changed since it was tried
+  std::vector<uint32_t> replaced_at_;  ///< per vertex when one of its triangles was replaced last
+  uint32_t clock_ = 0;                 ///< edges looked at together so far
   JoinOptions options_;
   int64_t tries_ = 0;       ///< that are left
   int64_t left_alone_ = 0;  ///< triangles without one

@@ -138,14 +138,14 @@ class Coarsening {
   std::priority_queue<Entry> queue_;
   std::vector<uint32_t> targets_, around_;
   std::vector<std::pair<double, uint32_t>> ways_;
-  WallScratch scratch_;
+  MeshChange scratch_;
 };
 
 Known known_of(const WallMesh& mesh) {
   Known known{std::vector<Quadric>(mesh.vertices().size()), std::vector<double>(mesh.vertices().size(), kNever)};
   for (const RegionTriangle& t : mesh.triangles()) {
-    const WorldPoint& a = mesh.at(t.corner[0]);
-    const WorldPoint n = doubled_area(a, mesh.at(t.corner[1]), mesh.at(t.corner[2]));
+    if (t.is_gone()) continue;
+    const WorldPoint &a = mesh.at(t.corner[0]), n = mesh.normal(t);
     if (const double size = length(n); size > 0)
       for (const uint32_t v : t.corner) known.quadric[v].add_plane((1 / size) * n, a, size / 6);
   }
@@ -158,8 +158,7 @@ double square_of_edges(const WallMesh& mesh, int64_t vertices) {
   for (const RegionTriangle& t : mesh.triangles()) {
     if (t.is_gone()) continue;
     const double aimed_at = mesh.aimed_at(t.corner[0]);
-    doubled +=
-        length(doubled_area(mesh.at(t.corner[0]), mesh.at(t.corner[1]), mesh.at(t.corner[2]))) / (aimed_at * aimed_at);
+    doubled += length(mesh.normal(t)) / (aimed_at * aimed_at);
   }
   return 2 * doubled / (kTwoRootThree * double(vertices));
 }

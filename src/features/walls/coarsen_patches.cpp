@@ -78,7 +78,7 @@ class RelaxedPart {
       for (uint32_t& v : t.corner) v = number[v];
       triangles_.push_back(t);
     }
-    return PatchMesh(cut_, std::move(vertices_), std::move(triangles_), options);
+    return PatchMesh(cut_, {std::move(vertices_), std::move(triangles_), EditableMesh::Size::many}, options);
   }
 
  private:
@@ -131,7 +131,7 @@ SharedVertices keep_seeds(const RelaxedPart& relaxed, const std::vector<char>& i
 
 /// Takes vertices into those beside them on their curves. Result: those that cannot go.
 std::vector<uint32_t> left_of(std::vector<uint32_t> vertices, WallMesh& mesh, const Context& context) {
-  WallScratch scratch;
+  MeshChange scratch;
   std::vector<uint32_t> targets;
   for (const WallMesh::Shapes shapes : {WallMesh::Shapes::good, WallMesh::Shapes::any}) {
     const auto goes = [&](uint32_t v) {
@@ -162,7 +162,7 @@ std::vector<uint32_t> patches_beside(const std::vector<uint32_t>& vertices, cons
 /// on no change makes more of them.
 std::vector<uint32_t> patches_met(const RelaxedPart& relaxed, const std::vector<RegionTriangle>& numbered,
                                   WallMesh& coarse) {
-  coarse.avoid(relaxed.corners(numbered));
+  coarse.avoid(coarse.lookup().cut().longest_edge_q8, relaxed.corners(numbered));
   std::vector<uint32_t> patches;
   std::vector<std::pair<uint64_t, uint32_t>> edges;  ///< and the curve that each is on
   for (const RegionTriangle& t : coarse.triangles()) {

@@ -1,6 +1,8 @@
 // coarsen_walls (see coarsen_walls.h).
 #include "features/walls/coarsen_walls.h"
 
+#include <utility>
+
 #include "core/watched.h"
 #include "features/walls/coarsen.h"
 #include "features/walls/even_out.h"
@@ -13,7 +15,7 @@ PatchMesh coarsen_walls(const CutSurface& cut, const WallTriangles& walls, const
     WallMesh mesh(cut, walls);
     coarsen(mesh, options.vertices, context);
     even_out(mesh, options.vertices, context);
-    return PatchMesh(cut, mesh.vertices(), mesh.triangles(), options);
+    return PatchMesh(cut, std::move(mesh), options);
   });
 }
 

@@ -83,7 +83,7 @@ class Evening {
   const WallBlocks& blocks_;
   size_t block_;
   std::vector<uint32_t> ends_, around_;
-  WallScratch scratch_;
+  MeshChange scratch_;
 };
 
 template <class Work>
@@ -115,7 +115,7 @@ std::vector<uint64_t> long_edges(const WallMesh& mesh) {
   return out;
 }
 
-bool split_edge(WallMesh& mesh, uint32_t u, uint32_t v, WallScratch& scratch) {
+bool split_edge(WallMesh& mesh, uint32_t u, uint32_t v, MeshChange& scratch) {
   const std::optional<uint32_t> curve = mesh.curve_between(u, v);
   if (!curve) return false;
   using Kind = RegionVertex::Kind;
@@ -131,7 +131,7 @@ bool split_edge(WallMesh& mesh, uint32_t u, uint32_t v, WallScratch& scratch) {
 }
 
 void split_long_edges(WallMesh& mesh, int64_t most) {
-  WallScratch scratch;
+  MeshChange scratch;
   for (const uint64_t edge : long_edges(mesh)) {
     if (most == 0) return;
     most -= split_edge(mesh, uint32_t(edge >> 32), uint32_t(edge), scratch) ? 1 : 0;

@@ -53,7 +53,7 @@ bool WallBlocks::holds_around(size_t block, uint32_t v) const {
 double side_of_blocks_q8(const WallMesh& mesh, int64_t vertices) {
   double doubled = 0;
   for (const RegionTriangle& t : mesh.triangles())
-    if (!t.is_gone()) doubled += length(doubled_area(mesh.at(t.corner[0]), mesh.at(t.corner[1]), mesh.at(t.corner[2])));
+    if (!t.is_gone()) doubled += length(mesh.normal(t));
   return kEdges * std::sqrt(2 * doubled / (kTwoRootThree * double(vertices)));
 }
 

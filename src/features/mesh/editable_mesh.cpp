@@ -1,0 +1,273 @@
+// EditableMesh (see editable_mesh.h).
+#include "features/mesh/editable_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/half_edges.h"
+
+namespace isoshell {
+namespace {
+
+constexpr RegionTriangle kGone{{kNone, kNone, kNone}, {kNone, kNone, kNone}, 0};
+
+bool is_in(const std::vector<uint32_t>& list, uint32_t v) {
+  return std::find(list.begin(), list.end(), v) != list.end();
+}
+
+std::array<uint32_t, 3> ascending(std::array<uint32_t, 3> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+}  // namespace
+
+double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
+  const double ab = distance_sq(a, b), bc = distance_sq(b, c), ca = distance_sq(c, a);
+  const double longer_sq = std::max({ab * bc, bc * ca, ca * ab});  // beside the smallest angle
+  return longer_sq > 0 ? length(doubled_area(a, b, c)) / std::sqrt(longer_sq) : 0;
+}
+
+EditableMesh::EditableMesh(std::vector<RegionVertex> vertices, std::vector<RegionTriangle> triangles, Size size)
+    : vertices_(std::move(vertices)), triangles_(std::move(triangles)) {
+  if (size == Size::few) return;
+  around_.resize(vertices_.size());
+  for (uint32_t t = 0; t < triangles_.size(); ++t)
+    if (!triangles_[t].is_gone())
+      for (const uint32_t v : triangles_[t].corner) around_[v].push_back(t);
+  count_.value = std::count_if(around_.begin(), around_.end(), [](const auto& at) { return !at.empty(); });
+}
+
+void EditableMesh::add_vertex(const RegionVertex& v) {
+  vertices_.push_back(v);
+  if (!around_.empty()) around_.emplace_back();
+}
+
+void EditableMesh::drop_last_vertex() {
+  vertices_.pop_back();
+  if (!around_.empty()) around_.pop_back();
+}
+
+void EditableMesh::list_neighbours(uint32_t v, std::vector<uint32_t>& out) const {
+  out.clear();
+  for_each_around(v, [&](uint32_t t) {
+    for (const uint32_t w : triangles_[t].corner)
+      if (w != v && !is_in(out, w)) out.push_back(w);
+  });
+}
+
+void EditableMesh::list_targets(uint32_t v, std::vector<uint32_t>& out) const {
+  if (vertices_[v].kind == RegionVertex::Kind::free) return list_neighbours(v, out);
+  out.clear();
+  if (vertices_[v].is_kept || vertices_[v].kind == RegionVertex::Kind::corner) return;
+  for_each_around(v, [&](uint32_t t) {
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t a = triangles_[t].corner[i], b = triangles_[t].corner[(i + 1) % 3];
+      if (triangles_[t].curve[i] == kNone || (a != v && b != v)) continue;
+      if (const uint32_t w = a == v ? b : a; !is_in(out, w)) out.push_back(w);
+    }
+  });
+}
+
+bool EditableMesh::is_edge(uint32_t u, uint32_t v) const {
+  bool is = false;
+  for_each_around(u, [&](uint32_t t) { is = is || triangles_[t].has(v); });
+  return is;
+}
+
+std::optional<uint32_t> EditableMesh::curve_between(uint32_t u, uint32_t v) const {
+  std::optional<uint32_t> curve;
+  for_each_side(u, v, [&](const Side& s) {
+    if (!curve) curve = triangles_[s.triangle].curve[s.edge];
+  });
+  return curve;
+}
+
+WorldPoint EditableMesh::normal(const RegionTriangle& t) const {
+  return doubled_area(at(t.corner[0]), at(t.corner[1]), at(t.corner[2]));
+}
+
+double EditableMesh::sine(const RegionTriangle& t) const {
+  return t.is_gone() ? 1 : smallest_sine(at(t.corner[0]), at(t.corner[1]), at(t.corner[2]));
+}
+
+CornersOfTriangle EditableMesh::corners(const RegionTriangle& t) const {
+  const auto& [a, b, c] = t.corner;
+  return {{a, b, c}, {rounded_down(at(a)), rounded_down(at(b)), rounded_down(at(c))}};
+}
+
+void EditableMesh::keep_apart(double cell_q8) {
+  if (guard_) return;
+  guard_ = std::make_shared<Guard>(Guard{TriangleSpace(cell_q8, triangles_.size()), {}, {}, {}});
+  for (uint32_t t = 0; t < triangles_.size(); ++t)
+    if (!triangles_[t].is_gone()) guard_->space.put(t, corners(triangles_[t]));
+}
+
+void EditableMesh::avoid_twins_of(const std::vector<RegionTriangle>& others) {
+  const auto is_here = [&](uint32_t v) { return v < vertices_.size(); };
+  for (const RegionTriangle& t : others) {
+    if (std::all_of(t.corner.begin(), t.corner.end(), is_here)) guard_->twins.push_back(ascending(t.corner));
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t u = t.corner[i], v = t.corner[(i + 1) % 3];
+      if (is_here(u) && is_here(v)) guard_->edges.push_back({edge_key(u, v), t.curve[i]});
+    }
+  }
+  std::sort(guard_->twins.begin(), guard_->twins.end());
+  std::sort(guard_->edges.begin(), guard_->edges.end());
+}
+
+void EditableMesh::avoid(double cell_q8, const std::vector<CornersOfTriangle>& others) {
+  guard_->others.emplace(cell_q8, others.size());
+  for (uint32_t i = 0; i < others.size(); ++i) guard_->others->put(i, others[i]);
+}
+
+/// Whether an edge on a curve, or off all, would be that of others at another place.
+bool EditableMesh::is_of_others(uint32_t u, uint32_t v, uint32_t curve) const {
+  if (!guard_ || guard_->edges.empty()) return false;
+  const Edges& edges = guard_->edges;
+  const auto found = std::lower_bound(edges.begin(), edges.end(), std::make_pair(edge_key(u, v), uint32_t(0)));
+  return found != edges.end() && found->first == edge_key(u, v) && (curve == kNone || found->second != curve);
+}
+
+/// Of a and b at the ends, c and d opposite.
+bool EditableMesh::list_flip(uint32_t triangle, size_t edge, MeshChange& change) const {
+  const RegionTriangle& t = triangles_[triangle];
+  if (t.is_gone() || t.curve[edge] != kNone) return false;
+  const uint32_t a = t.corner[edge], b = t.corner[(edge + 1) % 3], c = t.corner[(edge + 2) % 3];
+  Side other{};
+  size_t sides = 0;
+  for_each_side(a, b, [&](const Side& s) {
+    ++sides;
+    if (s.triangle != triangle) other = s;
+  });
+  const RegionTriangle& s = triangles_[other.triangle];
+  const uint32_t d = s.corner[(other.edge + 2) % 3];
+  if (sides != 2 || c == d || s.corner[other.edge] != b || s.patch != t.patch) return false;
+  if (!vertices_[c].is_inner && !vertices_[d].is_inner) return false;
+  change.clear();
+  change.replaced.assign({triangle, other.triangle});
+  change.number = change.replaced;
+  change.made.push_back({{a, d, c}, {s.curve[(other.edge + 1) % 3], kNone, t.curve[(edge + 2) % 3]}, t.patch});
+  change.made.push_back({{b, c, d}, {t.curve[(edge + 1) % 3], kNone, s.curve[(other.edge + 2) % 3]}, t.patch});
+  return true;
+}
+
+/// Whether an edge between two vertices may become one as far as those around tell: they have neighbours in common
+/// across their edge only.
+bool EditableMesh::may_meet_neighbours(uint32_t gone, uint32_t into, MeshChange& change) const {
+  list_neighbours(gone, change.here);
+  list_neighbours(into, change.there);
+  size_t both = 0, sides = 0;
+  for (const uint32_t v : change.here) {
+    const bool is_there = is_in(change.there, v);
+    both += is_there ? 1 : 0;
+    if (is_there || v == into || !guard_ || guard_->edges.empty()) continue;
+    if (is_of_others(into, v, *curve_between(gone, v))) return false;
+  }
+  for_each_side(gone, into, [&](const Side&) { ++sides; });
+  const bool are_tetrahedra =
+      change.here.size() == both + 1 && change.there.size() == both + 1;  // faces would be there twice
+  return both == sides && sides > 0 && !are_tetrahedra;
+}
+
+/// No two edges on curves become one.
+bool EditableMesh::list_collapse(uint32_t gone, uint32_t into, MeshChange& change) const {
+  const RegionVertex& from = vertices_[gone];
+  if (from.kind == RegionVertex::Kind::corner || from.is_kept || !from.is_inner || !vertices_[into].is_inner)
+    return false;
+  if (from.kind == RegionVertex::Kind::on_curve && curve_between(gone, into).value_or(kNone) == kNone) return false;
+  if (!may_meet_neighbours(gone, into, change)) return false;
+  change.clear();
+  bool are_apart = true;
+  for_each_side(gone, into, [&](const Side& s) {
+    const RegionTriangle& t = triangles_[s.triangle];
+    const uint32_t one = t.curve[(s.edge + 1) % 3], other = t.curve[(s.edge + 2) % 3];
+    are_apart = are_apart && (one == kNone || other == kNone);
+    const uint32_t curve = one != kNone ? one : other;
+    if (curve != kNone) change.fused.push_back({into, t.corner[(s.edge + 2) % 3], curve});
+  });
+  if (!are_apart) return false;
+  for_each_around(gone, [&](uint32_t i) {
+    change.replaced.push_back(i);
+    if (triangles_[i].has(into)) return;
+    RegionTriangle& t = change.made.emplace_back(triangles_[i]);
+    std::replace(t.corner.begin(), t.corner.end(), gone, into);
+    change.number.push_back(i);
+  });
+  return true;
+}
+
+bool EditableMesh::list_split(uint32_t u, uint32_t v, MeshChange& change) const {
+  if (!vertices_[u].is_inner && !vertices_[v].is_inner) return false;
+  if (vertices_[u].is_kept && vertices_[v].is_kept && curve_between(u, v) != kNone) return false;
+  const auto middle = uint32_t(vertices_.size());
+  change.clear();
+  for_each_side(u, v, [&](const Side& s) {
+    RegionTriangle one = triangles_[s.triangle], other = one;
+    const size_t next = (s.edge + 1) % 3, last = (s.edge + 2) % 3;
+    one.corner[next] = other.corner[s.edge] = middle;
+    one.curve[next] = other.curve[last] = kNone;
+    change.replaced.push_back(s.triangle);
+    change.made.insert(change.made.end(), {one, other});
+    change.number.insert(change.number.end(), {s.triangle, kNone});
+  });
+  return !change.made.empty();
+}
+
+void EditableMesh::list_around(uint32_t v, MeshChange& change) const {
+  change.clear();
+  for_each_around(v, [&](uint32_t t) {
+    change.replaced.push_back(t);
+    change.made.push_back(triangles_[t]);
+  });
+  change.number = change.replaced;
+}
+
+bool EditableMesh::are_free(MeshChange& change) const {
+  if (!guard_) return true;
+  change.corners.clear();
+  for (const RegionTriangle& t : change.made) change.corners.push_back(corners(t));
+  const auto is_twin = [&](const RegionTriangle& t) {
+    return std::binary_search(guard_->twins.begin(), guard_->twins.end(), ascending(t.corner));
+  };
+  return std::none_of(change.made.begin(), change.made.end(), is_twin) &&
+         guard_->space.are_free(change.corners, change.replaced) &&
+         (!guard_->others || guard_->others->are_free(change.corners, {}));
+}
+
+bool EditableMesh::commit(MeshChange& change) {
+  if (!are_free(change)) return false;
+  for (const uint32_t t : change.replaced)
+    if (!is_in(change.number, t)) replace(t, kGone);
+  for (size_t i = 0; i < change.made.size(); ++i) {
+    uint32_t& number = change.number[i];
+    if (number == kNone) {
+      number = uint32_t(triangles_.size());
+      triangles_.push_back(kGone);
+    }
+    replace(number, change.made[i]);
+  }
+  for (const auto& [u, v, curve] : change.fused)
+    for_each_side(u, v, [&, on = curve](const Side& s) { triangles_[s.triangle].curve[s.edge] = on; });
+  return true;
+}
+
+void EditableMesh::replace(uint32_t triangle, const RegionTriangle& by) {
+  RegionTriangle& t = triangles_[triangle];
+  if (guard_ && !t.is_gone()) guard_->space.take(triangle);
+  if (!around_.empty() && t.corner != by.corner) {
+    for (size_t i = 0; i < 3 && !t.is_gone(); ++i) {
+      std::vector<uint32_t>& around = around_[t.corner[i]];
+      around.erase(std::find(around.begin(), around.end(), triangle));
+      if (around.empty()) --count_.value;
+    }
+    for (size_t i = 0; i < 3 && !by.is_gone(); ++i) {
+      if (around_[by.corner[i]].empty()) ++count_.value;
+      around_[by.corner[i]].push_back(triangle);
+    }
+  }
+  t = by;
+  if (guard_ && !t.is_gone()) guard_->space.put(triangle, corners(t));
+}
+
+}  // namespace isoshell
