@@ -140,9 +140,9 @@ TEST_CASE("editable mesh: a flip is refused on a curve, at a border, between pat
   for (RegionTriangle& t : of_patches.triangles) t.patch = t.has(kC) ? 1 : 0;
   pyramid.vertices = {vertex_at(0, 0, 0), vertex_at(512, 0, 0), vertex_at(0, 512, 0), vertex_at(128, 128, 256)};
   for (const Corners& c : {Corners{0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) pyramid.add(c);
-  for (const auto& [parts, u, v] : {std::make_tuple(with_curve, kA, kD), std::make_tuple(of_patches, kA, kD),
-                                    std::make_tuple(grid(), grid_at(0, 0), grid_at(1, 0)),
-                                    std::make_tuple(pyramid, uint32_t(1), uint32_t(3))}) {
+  for (const auto& [parts, u, v] :
+       {std::make_tuple(with_curve, kA, kD), std::make_tuple(of_patches, kA, kD),
+        std::make_tuple(grid(), grid_at(0, 0), grid_at(1, 0)), std::make_tuple(pyramid, uint32_t(1), uint32_t(3))}) {
     EditableMesh mesh = parts.mesh();
     const auto before = state_of(mesh);
     CHECK(!flip(mesh, u, v));

@@ -8,8 +8,7 @@
 #include "core/watched.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/cut_fine_mesh.h"
-#include "features/mesh/corner_lists.h"
-#include "geometry/half_edges.h"
+#include "features/mesh/collapsing_mesh.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -19,40 +18,33 @@ namespace {
 constexpr double kShort = 0.2;     ///< inside of patches, a vertex with a shorter edge goes
 constexpr double kLongest = 0.45;  ///< and leaves none that is longer
 constexpr double kLongestOnCurve = 0.28;
-constexpr double kLeastCosine = 0.5;    ///< between a triangle's normal and those of the surface at its corners
-constexpr int64_t kFewestPerSeed = 6;   ///< vertices inside of a patch whose vertices go
-constexpr size_t kMostNeighbours = 16;  ///< of a vertex that goes
-constexpr int kMostSweeps = 8;
+constexpr double kLeastCosine = 0.5;     ///< between a triangle's normal and those of the surface at its corners
+constexpr int64_t kFewestPerSeed = 6;    ///< vertices inside of a patch whose vertices go
 constexpr uint32_t kTogether = 1 << 14;  ///< vertices that one task goes through
 
+std::vector<std::array<uint32_t, 3>> triangles_of(const SurfaceMesh& surface) {
+  std::vector<std::array<uint32_t, 3>> out;
+  out.reserve(size_t(surface.triangles.size()));
+  for (const TriangleIndices& t : surface.triangles) out.push_back({t.a, t.b, t.c});
+  return out;
+}
+
 /// The triangles of a surface while its vertices become fewer.
-class ThinnedTriangles {
+class ThinnedTriangles : public CollapsingMesh<ThinnedTriangles, int64_t> {
  public:
   ThinnedTriangles(const CutSurface& cut, const FreeSeeds::Counts& seeds, int levels)
-      : cut_(cut),
+      : CollapsingMesh(triangles_of(cut.surface), size_t(cut.surface.vertex_count())),
+        cut_(cut),
         surface_(cut.surface),
         scale_(1 << levels),
         seeds_(seeds),
-        vertices_(uint32_t(surface_.vertex_count())),
-        corner_(3 * size_t(surface_.triangles.size())),
-        corners_(corner_.size(), vertices_),
-        before_(vertices_, kNone),
-        after_(vertices_, kNone),
-        may_change_(vertices_, 1) {
-    for_each_index(size_t(0), corner_.size() / 3, [&](size_t t) {
-      const TriangleIndices i = surface_.triangles[int64_t(t)];
-      corner_[3 * t] = i.a, corner_[3 * t + 1] = i.b, corner_[3 * t + 2] = i.c;
-    });
-    for_each_index(uint32_t(0), vertices_, [&](uint32_t v) {
-      for (int64_t n = surface_.vertex_first[v]; n < surface_.vertex_first[v + 1]; ++n) {
-        uint32_t c = 3 * surface_.vertex_triangles[n];
-        while (corner_[c] != v) ++c;
-        corners_.add(v, c);
-      }
-      if (cut_.place[v] == kNone) return;
+        before_(vertices(), kNone),
+        after_(vertices(), kNone) {
+    for (uint32_t v = 0; v < vertices(); ++v) {
+      if (cut_.place[v] == kNone) continue;
       before_[v] = surface_.border_before[v];
       after_[before_[v]] = v;
-    });
+    }
     for (const CutCurve& curve : cut.curves) {
       is_seed_.emplace_back(curve.place.size(), 0);
       for (const size_t s : seeds_of_level(curve, levels)) is_seed_.back()[s] = 1;
@@ -69,28 +61,23 @@ class ThinnedTriangles {
   }
 
   const std::vector<size_t>& left_of(size_t curve) const { return left_[curve]; }
-  std::vector<uint32_t> vertices() const {
+  std::vector<uint32_t> vertices_left() const {
     std::vector<uint32_t> out;
-    for (uint32_t v = 0; v < vertices_; ++v)
-      if (is_left(v)) out.push_back(v);
+    for (uint32_t v = 0; v < vertices(); ++v)
+      if (is_there(v)) out.push_back(v);
     return out;
   }
-  std::vector<TriangleIndices> triangles() const {
+  std::vector<TriangleIndices> triangles_left() const {
     std::vector<TriangleIndices> out;
-    for (size_t c = 0; c < corner_.size(); c += 3)
-      if (corner_[c] != kNone) out.push_back({corner_[c], corner_[c + 1], corner_[c + 2]});
+    for (const auto& [a, b, c] : triangles_)
+      if (a != kNone) out.push_back({a, b, c});
     return out;
   }
 
  private:
-  using Ring = std::vector<uint32_t>;  ///< neighbours of a vertex
-  struct Scratch {
-    Ring ring, other;
-    std::vector<std::pair<int64_t, uint32_t>> choice;
-  };
+  friend CollapsingMesh;
 
-  bool is_left(uint32_t vertex) const { return corners_.is_there(vertex); }
-  int64_t length_sq(uint32_t u, uint32_t v) const {
+  int64_t distance_sq(uint32_t u, uint32_t v) const {
     return distance_sq_q16(surface_.position[u], surface_.position[v]);
   }
   int64_t square_of(double lengths, uint32_t v) const {
@@ -99,27 +86,14 @@ class ThinnedTriangles {
     return int64_t(length * length);
   }
 
-  /// Calls visit(corner) for the corners that a vertex has.
-  template <class Visit>
-  void for_each_corner(uint32_t v, Visit visit) const {
-    corners_.for_each(v, [&](uint32_t c) {
-      if (corner_[c] != kNone) visit(c);
-    });
-  }
-  void find_ring(uint32_t v, Ring& ring) const {
-    ring.clear();
-    for_each_corner(v, [&](uint32_t c) { ring.push_back(corner_[next_in_triangle(c)]); });
-    if (before_[v] != kNone) ring.push_back(before_[v]);
-  }
-  bool has(uint32_t corner, uint32_t v) const {
-    const uint32_t next = next_in_triangle(corner);
-    return corner_[next] == v || corner_[next_in_triangle(next)] == v;
-  }
+  int64_t short_sq(uint32_t v) const { return square_of(kShort, v); }
+  int64_t longest_sq(uint32_t v) const { return square_of(kLongest, v); }
+  static bool may_take(uint32_t) { return true; }
 
   /// Whether the triangle of a corner, once that is another vertex, faces as the surface does at its corners.
-  bool faces_outward(uint32_t corner, uint32_t at) const {
-    const uint32_t next = next_in_triangle(corner);
-    const uint32_t t[3] = {at, corner_[next], corner_[next_in_triangle(next)]};
+  bool fits(uint32_t c, uint32_t at, const Ring&) const {
+    const uint32_t next = next_in_triangle(c);
+    const uint32_t t[3] = {at, corner(next), corner(next_in_triangle(next))};
     const PointQ8 origin = surface_.position[at];
     const Vec64 n = cross(difference(surface_.position[t[1]], origin), difference(surface_.position[t[2]], origin));
     const double least_sq = kLeastCosine * kLeastCosine * 127 * 127 * double(dot(n, n));
@@ -130,50 +104,26 @@ class ThinnedTriangles {
     });
   }
 
-  /// Whether a vertex may go into a neighbour: triangles stay a manifold, short and not folded over.
-  bool may_go(uint32_t v, const Ring& ring, uint32_t into, Ring& other) const {
-    const int64_t most_sq = square_of(kLongest, into);
-    for (const uint32_t w : ring)
-      if (w != into && length_sq(w, into) > most_sq) return false;
-    const bool is_on_border = before_[v] != kNone;
-    if (is_on_border && (into == after_[v] ? after_[into] == before_[v] : before_[into] == after_[v])) return false;
-    find_ring(into, other);
-    const auto is_shared = [&](uint32_t w) { return std::find(ring.begin(), ring.end(), w) != ring.end(); };
-    if (std::count_if(other.begin(), other.end(), is_shared) != (is_on_border ? 1 : 2)) return false;
-    bool is_right = true;
-    for_each_corner(v, [&](uint32_t c) { is_right = is_right && (has(c, into) || faces_outward(c, into)); });
-    return is_right;
-  }
-
-  void take_into(uint32_t v, const Ring& ring, uint32_t into) {
-    for_each_corner(v, [&](uint32_t c) {
-      if (has(c, into))
-        std::fill_n(corner_.begin() + c / 3 * 3, 3, kNone);
-      else
-        corner_[c] = into;
-    });
-    corners_.take_into(v, into);
-    for (const uint32_t w : ring) stays_[w] = may_change_[w] = 1;
-    if (before_[v] == kNone) return;
-    before_[after_[v]] = before_[v];
-    after_[before_[v]] = after_[v];
+  bool go(uint32_t v, uint32_t into, const Scratch& s) {
+    take_into(v, s.ring, into);
+    return true;
   }
 
   /// One sweep, in which none of two neighbours goes, so that what is left is even. Tasks have vertices from `offset`
   /// on; one whose neighbours are not all of the same task stays, so that no task sees what another one does. Result:
   /// whether any vertex went.
   bool thin(uint32_t offset) {
-    stays_.assign(vertices_, 0);
+    std::fill(stays_.begin(), stays_.end(), 0);
     bool has_changed = false;
     for (size_t c = 0; c < left_.size(); ++c) has_changed |= thin_curve(c);
     const std::vector<char> is_dense = dense_patches();
     const auto task_of = [&](uint32_t v) { return (v + offset) / kTogether; };
-    std::vector<char> changed(task_of(vertices_ - 1) + 1, 0);
+    std::vector<char> changed(task_of(vertices() - 1) + 1, 0);
     for_each_index(uint32_t(0), uint32_t(changed.size()), [&](uint32_t task) {
       Scratch s;
-      const uint32_t end = std::min((task + 1) * kTogether - offset, vertices_);
+      const uint32_t end = std::min((task + 1) * kTogether - offset, vertices());
       for (uint32_t v = task == 0 ? 0 : task * kTogether - offset; v < end; ++v) {
-        if (!may_change_[v] || stays_[v] || cut_.place[v] != kNone || !is_left(v) || !is_dense[surface_.patch[v]])
+        if (!may_change_[v] || stays_[v] || cut_.place[v] != kNone || !is_there(v) || !is_dense[surface_.patch[v]])
           continue;
         find_ring(v, s.ring);
         if (std::all_of(s.ring.begin(), s.ring.end(), [&](uint32_t w) { return task_of(w) == task; }))
@@ -186,30 +136,11 @@ class ThinnedTriangles {
   /// Which patches have so many vertices inside that some may go.
   std::vector<char> dense_patches() const {
     std::vector<int64_t> inside(seeds_.size(), 0);
-    for (uint32_t v = 0; v < vertices_; ++v) inside[surface_.patch[v]] += cut_.place[v] == kNone && is_left(v) ? 1 : 0;
+    for (uint32_t v = 0; v < vertices(); ++v)
+      inside[surface_.patch[v]] += cut_.place[v] == kNone && is_there(v) ? 1 : 0;
     std::vector<char> out;
     for (size_t p = 0; p < inside.size(); ++p) out.push_back(inside[p] > kFewestPerSeed * seeds_[p] ? 1 : 0);
     return out;
-  }
-
-  /// Into the neighbour that leaves the shortest edges, of equal ones the first.
-  bool thin_inside(uint32_t v, Scratch& s) {
-    const int64_t least_sq = square_of(kShort, v);
-    const auto is_short = [&](uint32_t w) { return length_sq(v, w) < least_sq; };
-    if (s.ring.size() > kMostNeighbours || std::none_of(s.ring.begin(), s.ring.end(), is_short)) return false;
-    s.choice.clear();
-    for (const uint32_t u : s.ring) {
-      int64_t longest_sq = 0;
-      for (const uint32_t w : s.ring) longest_sq = std::max(longest_sq, length_sq(u, w));
-      s.choice.push_back({longest_sq, u});
-    }
-    std::sort(s.choice.begin(), s.choice.end());
-    for (const auto& [longest_sq, into] : s.choice) {
-      if (!may_go(v, s.ring, into, s.other)) continue;
-      take_into(v, s.ring, into);
-      return true;
-    }
-    return false;
   }
 
   /// Takes out places that are no seeds.
@@ -236,7 +167,7 @@ class ThinnedTriangles {
   bool take_out(uint32_t place, uint32_t before, uint32_t after) {
     const View<const uint32_t> copies = copies_of(place);
     const uint32_t u = copies_of(before)[0], w = copies_of(after)[0];
-    if (before == after || length_sq(u, w) > std::min(square_of(kLongestOnCurve, u), square_of(kLongestOnCurve, w)) ||
+    if (before == after || distance_sq(u, w) > std::min(square_of(kLongestOnCurve, u), square_of(kLongestOnCurve, w)) ||
         std::any_of(copies.begin(), copies.end(), [&](uint32_t v) { return stays_[v]; }))
       return false;
     std::vector<Ring> rings(size_t(copies.size));
@@ -251,10 +182,16 @@ class ThinnedTriangles {
       Ring into;
       for (size_t i = 0; i < rings.size(); ++i) {
         const uint32_t v = copies[int64_t(i)], along = cut_.place[before_[v]] == to ? before_[v] : after_[v];
-        if (may_go(v, rings[i], along, other)) into.push_back(along);
+        const bool is_last = along == after_[v] ? after_[along] == before_[v] : before_[along] == after_[v];
+        if (!is_last && may_go(v, rings[i], along, other)) into.push_back(along);
       }
       if (into.size() < rings.size()) continue;
-      for (size_t i = 0; i < rings.size(); ++i) take_into(copies[int64_t(i)], rings[i], into[i]);
+      for (size_t i = 0; i < rings.size(); ++i) {
+        const uint32_t v = copies[int64_t(i)];
+        take_into(v, rings[i], into[i]);
+        before_[after_[v]] = before_[v];
+        after_[before_[v]] = after_[v];
+      }
       return true;
     }
     return false;
@@ -264,12 +201,7 @@ class ThinnedTriangles {
   const SurfaceMesh& surface_;
   const int scale_;
   const FreeSeeds::Counts& seeds_;
-  const uint32_t vertices_;
-  std::vector<uint32_t> corner_;  ///< per corner 3 t + i of triangle t its vertex; kNone: it is gone
-  CornerLists corners_;
   std::vector<uint32_t> before_, after_;    ///< per vertex its neighbours on the border
-  std::vector<char> may_change_;            ///< per vertex: something around it has changed since it could not go
-  std::vector<char> stays_;                 ///< per vertex: for a sweep
   std::vector<std::vector<char>> is_seed_;  ///< per curve, of its places; both ends of an open curve are
   std::vector<std::vector<size_t>> left_;   ///< per curve, which of its places
 };
@@ -321,7 +253,7 @@ CoarserSurface coarser_surface(const CutSurface& finer, const FreeSeeds::Counts&
     cut.corner_count = finer.corner_count;
     for (size_t c = 0; c < finer.curves.size(); ++c)
       cut.curves.push_back(coarser_curve(finer.curves[c], thinned.left_of(c), levels));
-    const std::vector<uint32_t> left = thinned.vertices();
+    const std::vector<uint32_t> left = thinned.vertices_left();
     std::vector<uint32_t> number(size_t(finer.surface.vertex_count()), kNone);
     SurfaceTriangles from;
     std::copy(cut.frame.extent_vox, cut.frame.extent_vox + 3, from.extent_vox);
@@ -331,7 +263,7 @@ CoarserSurface coarser_surface(const CutSurface& finer, const FreeSeeds::Counts&
       from.position.push_back({p.x >> 1, p.y >> 1, p.z >> 1});
       from.patch.push_back(finer.surface.patch[v]);
     }
-    from.triangles = thinned.triangles();
+    from.triangles = thinned.triangles_left();
     for (TriangleIndices& t : from.triangles) t = {number[t.a], number[t.b], number[t.c]};
     MadeSurface made = make_surface_mesh(from, context);
     cut.surface = std::move(made.surface);

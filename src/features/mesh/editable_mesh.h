@@ -52,13 +52,13 @@ struct MeshChange {
 };
 
 /// Edges have two triangles or, on curves, any number. A change keeps the topology of every region, the patches, the
-/// curves, and what is kept; no edge and no triangle comes to be there twice, and with `keep_apart` no triangle comes to
-/// meet another one outside of corners that they share. Which of these changes are made is up to the caller: allow() is
-/// asked once it is known what a change makes, and before all that is costly. A change that is not made leaves the mesh
-/// as it was. Vertices and triangles keep their numbers; those that are gone have no triangles, and one corner twice.
-/// Several threads may make changes at once, each with its own MeshChange, but for splits, where the triangles around
-/// their vertices, before and after, lie in boxes that do not meet. Cost of each: the triangles around its vertices,
-/// and a look at those whose boxes meet them.
+/// curves, and what is kept; no edge and no triangle comes to be there twice, and with `keep_apart` no triangle comes
+/// to meet another one outside of corners that they share. Which of these changes are made is up to the caller: allow()
+/// is asked once it is known what a change makes, and before all that is costly. A change that is not made leaves the
+/// mesh as it was. Vertices and triangles keep their numbers; those that are gone have no triangles, and one corner
+/// twice. Several threads may make changes at once, each with its own MeshChange, but for splits, where the triangles
+/// around their vertices, before and after, lie in boxes that do not meet. Cost of each: the triangles around its
+/// vertices, and a look at those whose boxes meet them.
 class EditableMesh {
  public:
   /// Of few triangles, all are looked at where those of a vertex are asked for, and copies are cheap; of many, each
@@ -96,7 +96,8 @@ class EditableMesh {
   double sine(const RegionTriangle& t) const;
   CornersOfTriangle corners(const RegionTriangle& t) const;
 
-  /// From now on no triangle comes to meet another one, as far as that is not so already. They are in cells of that size.
+  /// From now on no triangle comes to meet another one, as far as that is not so already. They are in cells of that
+  /// size.
   void keep_apart(double cell_q8);
   /// No change makes one of these triangles from now on, nor an edge of theirs but where it is on the same curve. Their
   /// corners are vertices, or numbers that no vertex has. After keep_apart, as the next ones.
@@ -112,8 +113,8 @@ class EditableMesh {
   /// Puts the other diagonal into two triangles of one patch. Whether the change was made, here and below.
   template <class Allow>
   bool flip(uint32_t triangle, size_t edge, MeshChange& change, Allow allow) {
-    return list_flip(triangle, edge, change) && allow() && may_join(change.made[1].corner[1], change.made[1].corner[2]) &&
-           commit(change);
+    return list_flip(triangle, edge, change) && allow() &&
+           may_join(change.made[1].corner[1], change.made[1].corner[2]) && commit(change);
   }
   /// Takes a vertex into another one, along their edge: a free one, or one on a curve along that.
   template <class Allow>

@@ -8,10 +8,9 @@
 
 #include "core/buckets.h"
 #include "core/watched.h"
-#include "features/mesh/corner_lists.h"
+#include "features/mesh/collapsing_mesh.h"
 #include "features/mesh/lattice_cubes.h"
 #include "geometry/box.h"
-#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/lattice.h"
 #include "isoshell/advanced/voxel_set.h"
@@ -29,29 +28,22 @@ constexpr double kCellOfSpace = 0.2;              ///< between the edges that th
 constexpr double kCell = 8;                       ///< vertices of one task are in a cube of that size
 constexpr double kLeastCosine = 0.8;              ///< between normals of a triangle before and after
 constexpr double kLeastOfWalls = 0.5;             ///< between that of a triangle and those of the walls at its corners
-constexpr size_t kMostNeighbours = 16;            ///< of a vertex that goes
-constexpr int kMostSweeps = 8;                    ///< over a cube, each with vertices none of which are neighbours
 constexpr double kOffsets[] = {0, .5, .25, .75};  ///< of the cubes: vertices at the sides of some are inside of others
 constexpr uint32_t kOffCurves = kNone;
 constexpr uint32_t kStays = kNone - 1;  ///< a corner, or what is no surface and no curve either
 
-using Ring = std::vector<uint32_t>;  ///< neighbours of a vertex
-
 /// The triangles of walls while their vertices become fewer.
-class ThinnedWalls {
+class ThinnedWalls : public CollapsingMesh<ThinnedWalls, double> {
  public:
   /// A patch between curves with fewer vertices inside than `fewest` stays as it is.
   ThinnedWalls(FeatureMesh mesh, const EdgeList& creases, const LatticeFrame& frame, double edge_world, uint32_t fewest)
-      : mesh_(std::move(mesh)),
+      : CollapsingMesh(std::move(mesh.triangles), mesh.vertices.size()),
+        mesh_(std::move(mesh)),
         edge_world_(edge_world),
         edge_q8_(edge_world / frame.voxel_size * kOneVoxelQ8),
-        place_(mesh_.vertices.size()),
-        corners_(3 * mesh_.triangles.size(), mesh_.vertices.size()),
-        curve_(mesh_.vertices.size(), kOffCurves),
-        normal_(mesh_.vertices.size()),
-        may_change_(mesh_.vertices.size(), 1),
-        stays_(mesh_.vertices.size(), 0) {
-    for (uint32_t c = 0; c < 3 * mesh_.triangles.size(); ++c) corners_.add(corner(c), c);
+        place_(vertices()),
+        curve_(vertices(), kOffCurves),
+        normal_(vertices()) {
     for_each_index(uint32_t(0), vertices(), [&](uint32_t v) {
       normal_[v] = normal_at(v);
       place_[v] = frame.snap(mesh_.vertices[v]);
@@ -69,11 +61,11 @@ class ThinnedWalls {
     std::vector<uint32_t> number(vertices(), kNone);
     uint32_t count = 0;
     for (uint32_t v = 0; v < vertices(); ++v)
-      if (corners_.is_there(v)) mesh_.vertices[count] = mesh_.vertices[v], number[v] = count++;
+      if (is_there(v)) mesh_.vertices[count] = mesh_.vertices[v], number[v] = count++;
     mesh_.vertices.resize(count);
     std::vector<std::pair<std::array<uint32_t, 3>, uint32_t>> triangles;
-    for (size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      std::array<uint32_t, 3> c = mesh_.triangles[t];
+    for (size_t t = 0; t < triangles_.size(); ++t) {
+      std::array<uint32_t, 3> c = triangles_[t];
       if (c[0] == kNone) continue;
       for (uint32_t& v : c) v = number[v];
       std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
@@ -91,8 +83,9 @@ class ThinnedWalls {
   }
 
  private:
-  struct Scratch {
-    Scratch(const Cubes& of, int64_t in, View<const uint32_t> all, double cell_q8)
+  friend CollapsingMesh;
+  struct CubeScratch : Scratch {
+    CubeScratch(const Cubes& of, int64_t in, View<const uint32_t> all, double cell_q8)
         : cubes(of), cube(in), triangles(all), space(cell_q8, size_t(all.size)) {}
 
     const Cubes& cubes;
@@ -101,32 +94,17 @@ class ThinnedWalls {
     TriangleSpace space;             ///< of these, by their places in that list
     std::vector<CornersOfTriangle> made;
     std::vector<uint32_t> replaced, number;
-    Ring ring, other;
-    std::vector<std::pair<double, uint32_t>> choice;
   };
 
-  uint32_t vertices() const { return uint32_t(mesh_.vertices.size()); }
-  uint32_t corner(uint32_t c) const { return mesh_.triangles[c / 3][c % 3]; }
   const WorldPoint& at(uint32_t v) const { return mesh_.vertices[v]; }
-  double most_sq(double edges) const { return edges * edges * edge_world_ * edge_world_; }
+  double distance_sq(uint32_t u, uint32_t v) const { return isoshell::distance_sq(at(u), at(v)); }
+  double square_of(double edges) const { return edges * edges * edge_world_ * edge_world_; }
+  double short_sq(uint32_t) const { return square_of(kShort); }
+  double longest_sq(uint32_t) const { return square_of(kLongest); }
   bool is_on_curve(uint32_t v) const { return curve_[v] != kOffCurves && curve_[v] != kStays; }
+  /// Small walls keep some vertices inside so.
+  bool may_take(uint32_t v) const { return curve_[v] == kOffCurves; }
 
-  /// Calls visit(corner) for the corners that a vertex has.
-  template <class Visit>
-  void for_each_corner(uint32_t v, Visit visit) const {
-    corners_.for_each(v, [&](uint32_t c) {
-      if (corner(c) != kNone) visit(c);
-    });
-  }
-  void find_ring(uint32_t v, Ring& ring) const {
-    ring.clear();
-    for_each_corner(v, [&](uint32_t c) {
-      const uint32_t a = next_in_triangle(c);
-      ring.insert(ring.end(), {corner(a), corner(next_in_triangle(a))});
-    });
-    std::sort(ring.begin(), ring.end());
-    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-  }
   WorldPoint area_of(uint32_t c, uint32_t v) const {
     const uint32_t a = next_in_triangle(c);
     return doubled_area(at(v), at(corner(a)), at(corner(next_in_triangle(a))));
@@ -184,8 +162,8 @@ class ThinnedWalls {
     std::vector<uint32_t> parent(vertices()), count(vertices(), 0);
     const View<uint32_t> sets{parent.data(), int64_t(parent.size())};
     for_each_index(uint32_t(0), vertices(), StartAlone{sets});
-    for_each_index(size_t(0), mesh_.triangles.size(), [&](size_t t) {
-      const auto& c = mesh_.triangles[t];
+    for_each_index(size_t(0), triangles_.size(), [&](size_t t) {
+      const auto& c = triangles_[t];
       for (size_t i = 0; i < 3; ++i)
         if (curve_[c[i]] == kOffCurves && curve_[c[(i + 1) % 3]] == kOffCurves) join(sets, c[i], c[(i + 1) % 3]);
     });
@@ -198,7 +176,7 @@ class ThinnedWalls {
   void keep_small_patches(uint32_t fewest) {
     const std::vector<uint32_t> size = sizes_of_patches();
     std::vector<char> is_kept(vertices(), 0);
-    for (const auto& t : mesh_.triangles) {
+    for (const auto& t : triangles_) {
       const bool is_small =
           std::all_of(t.begin(), t.end(), [&](uint32_t v) { return curve_[v] != kOffCurves || size[v] < fewest; });
       if (is_small) is_kept[t[0]] = is_kept[t[1]] = is_kept[t[2]] = 1;
@@ -207,11 +185,13 @@ class ThinnedWalls {
       if (is_kept[v]) curve_[v] = kStays;
   }
 
-  /// Whether the triangle of a corner, once that is another vertex, faces as it did, and as the walls do at its
-  /// corners.
-  bool faces_outward(uint32_t c, uint32_t into) const {
+  /// Whether the triangle of a corner, once that is another vertex, is not between neighbours of that which share it
+  /// already, and faces as it did, and as the walls do at its corners.
+  bool fits(uint32_t c, uint32_t into, const Ring& beside) const {
     const uint32_t a = next_in_triangle(c), b = next_in_triangle(a);
     const uint32_t corners[3] = {into, corner(a), corner(b)};
+    const auto is_beside = [&](uint32_t v) { return std::binary_search(beside.begin(), beside.end(), v); };
+    if (is_beside(corners[1]) && is_beside(corners[2])) return false;
     const WorldPoint n = area_of(c, into);
     const auto is_along = [&](const WorldPoint& m, double least) {
       const double along = dot(n, m);
@@ -223,34 +203,14 @@ class ThinnedWalls {
            });
   }
 
-  /// Whether a vertex may go into a neighbour: the topology stays, triangles stay short and do not fold over.
-  bool may_go(uint32_t v, const Ring& ring, uint32_t into, Ring& other) const {
-    if (std::any_of(ring.begin(), ring.end(),
-                    [&](uint32_t w) { return distance_sq(at(w), at(into)) > most_sq(kLongest); }))
-      return false;
-    find_ring(into, other);
-    const auto is_shared = [&](uint32_t w) { return std::binary_search(other.begin(), other.end(), w); };
-    if (is_on_curve(v) && is_shared(other_beside(v, into))) return false;
-    ptrdiff_t on_edge = 0;
-    bool is_right = true;
-    for_each_corner(v, [&](uint32_t c) {
-      const uint32_t a = next_in_triangle(c), u = corner(a), w = corner(next_in_triangle(a));
-      if (u == into || w == into)
-        ++on_edge;
-      else
-        is_right = is_right && !(is_shared(u) && is_shared(w)) && faces_outward(c, into);
-    });
-    return is_right && std::count_if(ring.begin(), ring.end(), is_shared) == on_edge;
-  }
-
   CornersOfTriangle corners(const std::array<uint32_t, 3>& t) const {
     return {{t[0], t[1], t[2]}, {place_[t[0]], place_[t[1]], place_[t[2]]}};
   }
   /// Lists what the triangles of a vertex are, and what becomes of them. Result: whether that meets nothing.
-  bool is_free(uint32_t v, uint32_t into, Scratch& s) const {
+  bool is_free(uint32_t v, uint32_t into, CubeScratch& s) const {
     s.made.clear(), s.replaced.clear(), s.number.clear();
     for_each_corner(v, [&](uint32_t c) {
-      std::array<uint32_t, 3> t = mesh_.triangles[c / 3];
+      std::array<uint32_t, 3> t = triangles_[c / 3];
       s.replaced.push_back(
           uint32_t(std::lower_bound(s.triangles.begin(), s.triangles.end(), c / 3) - s.triangles.begin()));
       if (std::find(t.begin(), t.end(), into) != t.end()) return;
@@ -261,22 +221,16 @@ class ThinnedWalls {
     return s.space.are_free(s.made, s.replaced);
   }
 
-  void take_into(uint32_t v, uint32_t into, Scratch& s) {
+  bool go(uint32_t v, uint32_t into, CubeScratch& s) {
+    if (!is_free(v, into, s)) return false;
     for (const uint32_t t : s.replaced) s.space.take(t);
     for (size_t i = 0; i < s.made.size(); ++i) s.space.put(s.number[i], s.made[i]);
-    for_each_corner(v, [&](uint32_t c) {
-      std::array<uint32_t, 3>& t = mesh_.triangles[c / 3];
-      if (std::find(t.begin(), t.end(), into) != t.end())
-        t.fill(kNone);
-      else
-        t[c % 3] = into;
-    });
-    corners_.take_into(v, into);
-    for (const uint32_t w : s.ring) stays_[w] = may_change_[w] = 1;
-    if (!is_on_curve(v)) return;
+    take_into(v, s.ring, into);
+    if (!is_on_curve(v)) return true;
     const uint32_t other = other_beside(v, into);
     if (is_on_curve(into)) replace_beside(into, v, other);
     if (is_on_curve(other)) replace_beside(other, v, into);
+    return true;
   }
 
   uint32_t other_beside(uint32_t v, uint32_t u) const {
@@ -294,11 +248,11 @@ class ThinnedWalls {
     const Cubes cubes(place_, kCell * edge_q8_, offset);
     const auto vertices_in = sort_into_buckets<uint32_t>(cubes.count(), int64_t(vertices()), [&](int64_t v, auto put) {
       const auto i = size_t(v);
-      if (corners_.is_there(uint32_t(v)) && curve_[i] != kStays) put(cubes.of(place_[i]), uint32_t(v));
+      if (is_there(uint32_t(v)) && curve_[i] != kStays) put(cubes.of(place_[i]), uint32_t(v));
     });
     const auto triangles_in =
-        sort_into_buckets<uint32_t>(cubes.count(), int64_t(mesh_.triangles.size()), [&](int64_t t, auto put) {
-          const auto& c = mesh_.triangles[size_t(t)];
+        sort_into_buckets<uint32_t>(cubes.count(), int64_t(triangles_.size()), [&](int64_t t, auto put) {
+          const auto& c = triangles_[size_t(t)];
           if (c[0] != kNone)
             cubes.for_each_meeting(box_of(place_[c[0]], place_[c[1]], place_[c[2]]),
                                    [&](int64_t cube) { put(cube, uint32_t(t)); });
@@ -312,14 +266,14 @@ class ThinnedWalls {
   }
 
   /// In sweeps, in which none of two neighbours goes, so that what is left is even.
-  void thin_cube(View<const uint32_t> vertices, Scratch s) {
-    for (int64_t i = 0; i < s.triangles.size; ++i) s.space.put(uint32_t(i), corners(mesh_.triangles[s.triangles[i]]));
+  void thin_cube(View<const uint32_t> vertices, CubeScratch s) {
+    for (int64_t i = 0; i < s.triangles.size; ++i) s.space.put(uint32_t(i), corners(triangles_[s.triangles[i]]));
     bool has_changed = true;
     for (int sweep = 0; sweep < kMostSweeps && has_changed; ++sweep) {
       has_changed = false;
       for (const uint32_t v : vertices) stays_[v] = 0;
       for (const uint32_t v : vertices) {
-        if (stays_[v] || !may_change_[v] || !corners_.is_there(v)) continue;
+        if (stays_[v] || !may_change_[v] || !is_there(v)) continue;
         find_ring(v, s.ring);
         if (!std::all_of(s.ring.begin(), s.ring.end(), [&](uint32_t w) { return s.cubes.of(place_[w]) == s.cube; }))
           continue;
@@ -329,47 +283,23 @@ class ThinnedWalls {
     }
   }
 
-  /// Into the neighbour off curves that leaves the shortest edges, of equal ones the first: small walls keep some
-  /// vertices inside so.
-  bool thin_inside(uint32_t v, Scratch& s) {
-    const auto is_short = [&](uint32_t w) { return distance_sq(at(v), at(w)) < most_sq(kShort); };
-    if (s.ring.size() > kMostNeighbours || std::none_of(s.ring.begin(), s.ring.end(), is_short)) return false;
-    s.choice.clear();
-    for (const uint32_t u : s.ring) {
-      if (curve_[u] != kOffCurves) continue;
-      double longest_sq = 0;
-      for (const uint32_t w : s.ring) longest_sq = std::max(longest_sq, distance_sq(at(u), at(w)));
-      s.choice.push_back({longest_sq, u});
-    }
-    std::sort(s.choice.begin(), s.choice.end());
-    for (const auto& [longest_sq, into] : s.choice) {
-      if (longest_sq > most_sq(kLongest)) return false;
-      if (!may_go(v, s.ring, into, s.other) || !is_free(v, into, s)) continue;
-      take_into(v, into, s);
-      return true;
-    }
-    return false;
-  }
-
-  bool thin_on_curve(uint32_t v, Scratch& s) {
+  bool thin_on_curve(uint32_t v, CubeScratch& s) {
     const auto [before, after] = beside_[curve_[v]];
-    if (before == after || distance_sq(at(before), at(after)) > most_sq(kLongestOnCurve)) return false;
+    if (before == after || distance_sq(before, after) > square_of(kLongestOnCurve)) return false;
     for (const uint32_t into : {before, after}) {
-      if (!may_go(v, s.ring, into, s.other) || !is_free(v, into, s)) continue;
-      take_into(v, into, s);
-      return true;
+      find_ring(into, s.other);
+      if (std::binary_search(s.other.begin(), s.other.end(), other_beside(v, into))) continue;
+      if (may_go(v, s.ring, into, s.other) && go(v, into, s)) return true;
     }
     return false;
   }
 
-  FeatureMesh mesh_;  ///< a triangle that is gone has no corners
+  FeatureMesh mesh_;  ///< but its triangles
   double edge_world_, edge_q8_;
-  std::vector<PointQ8> place_;  ///< per vertex, on the lattice of the run
-  CornerLists corners_;
+  std::vector<PointQ8> place_;   ///< per vertex, on the lattice of the run
   std::vector<uint32_t> curve_;  ///< per vertex on a curve its number in beside_
   std::vector<std::array<uint32_t, 2>> beside_;
-  std::vector<Normal8> normal_;           ///< per vertex that of the walls there
-  std::vector<char> may_change_, stays_;  ///< per vertex: something has changed since it could not go; for a sweep
+  std::vector<Normal8> normal_;  ///< per vertex that of the walls there
 };
 
 }  // namespace
