@@ -117,44 +117,27 @@ class ThinnedWalls : public CollapsingMesh<ThinnedWalls, double> {
     return {whole(n.x), whole(n.y), whole(n.z)};
   }
 
-  /// Curves are along creases, and edges that have not two triangles which pass them in opposite directions.
+  /// Curves are along creases, and edges that have not two triangles which pass them in opposite directions. They pass
+  /// vertices where two such edges, of as many triangles, meet.
   void find_curves(const EdgeList& creases) {
-    Ring out, in;
-    const auto is_crease = [&](uint32_t v, uint32_t w) {
-      return std::binary_search(creases.begin(), creases.end(), std::array{std::min(v, w), std::max(v, w)});
-    };
+    using OnCurve = std::pair<uint32_t, int64_t>;  // the other end of an edge, and how many triangles are there
+    std::vector<std::pair<uint32_t, OnCurve>> found;
+    for_each_edge(find_edge_sides(triangles_, vertices()), [&](uint32_t u, uint32_t v, View<const EdgeSide> sides) {
+      const auto begins_at_u = [&](const EdgeSide& s) { return corner(s.half_edge) == u; };
+      const bool is_inner = sides.size == 2 && begins_at_u(sides[0]) != begins_at_u(sides[1]);
+      if (is_inner && !std::binary_search(creases.begin(), creases.end(), std::array{u, v})) return;
+      found.insert(found.end(), {{u, {v, sides.size}}, {v, {u, sides.size}}});
+    });
+    const auto at = sort_into_buckets<OnCurve>(int64_t(vertices()), int64_t(found.size()), [&](int64_t i, auto put) {
+      put(found[size_t(i)].first, found[size_t(i)].second);
+    });
     for (uint32_t v = 0; v < vertices(); ++v) {
-      out.clear(), in.clear();
-      for_each_corner(v, [&](uint32_t c) {
-        const uint32_t a = next_in_triangle(c);
-        out.push_back(corner(a));
-        in.push_back(corner(next_in_triangle(a)));
-      });
-      std::sort(out.begin(), out.end());
-      std::sort(in.begin(), in.end());
-      if (out == in && std::adjacent_find(out.begin(), out.end()) == out.end() &&
-          std::none_of(out.begin(), out.end(), [&](uint32_t w) { return is_crease(v, w); }))
-        continue;
-      note_curve(v, out, in, [&](uint32_t w) { return is_crease(v, w); });
+      const View<const OnCurve> edges = at.in(v);
+      if (edges.size == 0) continue;
+      const bool is_inside = edges.size == 2 && edges[0].second == edges[1].second;
+      curve_[v] = is_inside ? uint32_t(beside_.size()) : kStays;
+      if (is_inside) beside_.push_back({edges[0].first, edges[1].first});
     }
-  }
-  /// Of the neighbours that edges lead to, and from.
-  template <class IsCrease>
-  void note_curve(uint32_t v, const Ring& out, const Ring& in, IsCrease is_crease_to) {
-    Ring all = out;
-    all.insert(all.end(), in.begin(), in.end());
-    std::sort(all.begin(), all.end());
-    std::vector<std::pair<uint32_t, size_t>> along;  // neighbours on curves, and how many triangles are there
-    for (auto i = all.begin(); i != all.end();) {
-      const auto end = std::upper_bound(i, all.end(), *i);
-      const auto leading = std::equal_range(out.begin(), out.end(), *i);
-      if (end - i != 2 || leading.second - leading.first != 1 || is_crease_to(*i))
-        along.push_back({*i, size_t(end - i)});
-      i = end;
-    }
-    const bool is_inside = along.size() == 2 && along[0].second == along[1].second;
-    curve_[v] = is_inside ? uint32_t(beside_.size()) : kStays;
-    if (is_inside) beside_.push_back({along[0].first, along[1].first});
   }
 
   /// Per vertex off curves, how many there are in its patch.
