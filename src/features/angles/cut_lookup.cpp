@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "core/parallel_ranges.h"
+#include "features/mesh/refine_mesh.h"
 #include "geometry/segment.h"
+#include "voxel/closest_point.h"
 
 namespace isoshell {
 namespace {
@@ -16,13 +20,71 @@ constexpr double kRounding = 2;          ///< steps that a straight curve may se
 
 }  // namespace
 
-CutLookup::CutLookup(const CutSurface& cut) : cut_(&cut), bends_(cut.curves.size()) {
+CutLookup::CutLookup(const CutSurface& cut)
+    : cut_(&cut), bends_(cut.curves.size()), at_place_(cut.copies_first.size() - 1, {kNone, 0}) {
   for_each_index(uint32_t(0), uint32_t(bends_.size()), [&](uint32_t c) { bends_[c] = bends_of(c); });
+  for (uint32_t c = 0; c < cut.curves.size(); ++c)
+    for (size_t i = 0; i < cut.curves[c].place.size(); ++i) at_place_[cut.curves[c].place[i]] = {c, i};
 }
 
 WorldPoint CutLookup::position(uint32_t home) const {
   const PointQ8 p = cut_->surface.position[home];
   return {double(p.x), double(p.y), double(p.z)};
+}
+
+RegionVertex CutLookup::vertex_at(uint32_t home) const {
+  using Kind = RegionVertex::Kind;
+  RegionVertex out;
+  out.home = home;
+  out.position = position(home);
+  const uint32_t place = cut_->place[home];
+  if (place == kNone) return out;
+  out.kind = place < cut_->corner_count ? Kind::corner : Kind::on_curve;
+  std::tie(out.curve, out.at) = at_place_[place];
+  return out;
+}
+
+RegionVertex CutLookup::on_curve_at(uint32_t curve, size_t at) const { return vertex_at(home_on(curve, at)); }
+
+std::optional<RegionVertex> CutLookup::on_surface_near(const RegionVertex& from, const WorldPoint& near) const {
+  RegionVertex out = from;
+  out.home = nearest_from(from.home, near);
+  if (cut_->place[out.home] != kNone) return {};
+  const SurfaceMesh& surface = cut_->surface;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int64_t n = surface.vertex_first[out.home]; n < surface.vertex_first[out.home + 1]; ++n) {
+    const TriangleIndices t = surface.triangles[surface.vertex_triangles[n]];
+    const PointQ8 at =
+        closest_point_on_triangle(rounded(near), surface.position[t.a], surface.position[t.b], surface.position[t.c]);
+    const WorldPoint there{double(at.x), double(at.y), double(at.z)};
+    if (const double d = distance_sq(there, near); d < nearest) nearest = d, out.position = there;
+  }
+  return out;
+}
+
+double CutLookup::way_between(const RegionVertex& from, const RegionVertex& to) const {
+  const CutCurve& curve = cut_->curves[from.curve];
+  const double here = curve.at_q8[from.at], half = curve.length_q8 / 2;
+  if (to.kind == RegionVertex::Kind::corner) {
+    const uint32_t place = cut_->place[to.home];
+    const bool is_first = curve.place.front() == place, is_last = curve.place.back() == place;
+    return (is_last && (!is_first || here > half) ? curve.length_q8 : 0) - here;
+  }
+  const double way = curve.at_q8[to.at] - here;
+  if (!curve.is_loop || std::abs(way) <= half) return way;
+  return way > 0 ? way - curve.length_q8 : way + curve.length_q8;
+}
+
+RegionVertex CutLookup::along(const RegionVertex& from, double way_q8) const {
+  const CutCurve& curve = cut_->curves[from.curve];
+  const std::vector<double>& at = curve.at_q8;
+  double wanted = at[from.at] + way_q8;
+  if (curve.is_loop && wanted < 0) wanted += curve.length_q8;
+  if (curve.is_loop && wanted >= curve.length_q8) wanted -= curve.length_q8;
+  auto i = size_t(std::lower_bound(at.begin(), at.end(), wanted) - at.begin());
+  if (i == at.size() || (i > 0 && wanted - at[i - 1] < at[i] - wanted)) --i;
+  if (!curve.is_loop) i = std::min(std::max(i, size_t(1)), at.size() - 2);
+  return on_curve_at(from.curve, i);
 }
 
 double CutLookup::edge_length(uint32_t home) const {

@@ -1,6 +1,8 @@
 // What changes of a result ask of the surface below it, over and over.
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "features/cutting/cut_surface.h"
@@ -16,6 +18,17 @@ class CutLookup {
 
   const CutSurface& cut() const { return *cut_; }
   WorldPoint position(uint32_t home) const;
+  /// What is at a vertex of the surface: a corner or a place of a curve on borders.
+  RegionVertex vertex_at(uint32_t home) const;
+  /// At a place of a curve; beyond the last one of a loop it goes on with the first.
+  RegionVertex on_curve_at(uint32_t curve, size_t at) const;
+  /// The point of the surface that is nearest to one, in the triangles around the vertex of it that is. None where that
+  /// is on a border.
+  std::optional<RegionVertex> on_surface_near(const RegionVertex& from, const WorldPoint& near) const;
+  /// From a vertex on a curve to the next one, along it, in lattice steps; negative towards its beginning.
+  double way_between(const RegionVertex& from, const RegionVertex& to) const;
+  /// The place of a curve that is nearest to so far from a vertex on it, no corner.
+  RegionVertex along(const RegionVertex& from, double way_q8) const;
   uint32_t patch(uint32_t home) const { return cut_->surface.patch.empty() ? 0 : cut_->surface.patch[home]; }
   double edge_length(uint32_t home) const;
   /// The first copy of a place of a curve; beyond the last place of a loop it goes on with the first.
@@ -36,7 +49,8 @@ class CutLookup {
   std::vector<size_t> bends_of(uint32_t curve) const;
 
   const CutSurface* cut_;
-  std::vector<std::vector<size_t>> bends_;  ///< per curve, ascending; of loops those of two rounds
+  std::vector<std::vector<size_t>> bends_;             ///< per curve, ascending; of loops those of two rounds
+  std::vector<std::pair<uint32_t, size_t>> at_place_;  ///< per place a curve that it is on, and where on that
 };
 
 }  // namespace isoshell

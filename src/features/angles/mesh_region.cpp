@@ -65,16 +65,6 @@ bool MeshRegion::has_changed(size_t triangle) const {
   return t.is_gone() || changed_at(t) > 0;
 }
 
-RegionVertex MeshRegion::on_curve_at(uint32_t curve, size_t at) const {
-  RegionVertex out;
-  out.kind = RegionVertex::Kind::on_curve;
-  out.curve = curve;
-  out.at = at % surface_->cut().curves[curve].place.size();
-  out.home = surface_->home_on(curve, out.at);
-  out.position = surface_->position(out.home);
-  return out;
-}
-
 /// In an edge, as near to a point as there are places on its curve, or vertices of the surface. Stays a corner where
 /// there is none.
 RegionVertex MeshRegion::vertex_between(uint32_t u, uint32_t v, uint32_t curve, uint32_t patch,
@@ -88,21 +78,12 @@ RegionVertex MeshRegion::vertex_between(uint32_t u, uint32_t v, uint32_t curve, 
     for (size_t i = begin + 1; i < end; ++i)
       if (const double d = distance_sq(surface_->position(surface_->home_on(curve, i)), near); d < nearest)
         best = i, nearest = d;
-    return best < end ? on_curve_at(curve, best) : none;
+    return best < end ? surface_->on_curve_at(curve, best) : none;
   }
   const uint32_t start =
       vertex(u).kind == RegionVertex::Kind::free ? vertex(u).home : surface_->copy_in(vertex(v).home, patch);
-  return start == kNone ? none : vertex_near(start, near);
-}
-
-/// The vertex of the surface there. A corner where that is on a border.
-RegionVertex MeshRegion::vertex_near(uint32_t start, const WorldPoint& near) const {
-  const uint32_t at = surface_->nearest_from(start, near);
-  RegionVertex out;
-  out.kind = surface_->cut().place[at] == kNone ? RegionVertex::Kind::free : RegionVertex::Kind::corner;
-  out.home = at;
-  out.position = surface_->position(at);
-  return out;
+  const RegionVertex there = start == kNone ? none : surface_->vertex_at(surface_->nearest_from(start, near));
+  return there.kind == RegionVertex::Kind::free ? there : none;
 }
 
 bool MeshRegion::split(uint32_t u, uint32_t v, const WorldPoint& near) {
@@ -160,7 +141,7 @@ std::vector<RegionVertex> MeshRegion::positions_along(uint32_t v) const {
   for (const uint32_t u : next) {
     const auto [begin, end] = span(u, v, here.curve);
     for (size_t step = 1; begin + step < end; step *= 2)
-      out.push_back(on_curve_at(here.curve, begin == here.at ? begin + step : end - step));
+      out.push_back(surface_->on_curve_at(here.curve, begin == here.at ? begin + step : end - step));
   }
   return out;
 }

@@ -51,8 +51,6 @@ class MeshRegion : public EditableMesh {
   int changed_at(const RegionTriangle& t) const;
 
   RegionVertex vertex_between(uint32_t u, uint32_t v, uint32_t curve, uint32_t patch, const WorldPoint& near) const;
-  RegionVertex vertex_near(uint32_t start, const WorldPoint& near) const;
-  RegionVertex on_curve_at(uint32_t curve, size_t at) const;
   std::vector<RegionVertex> positions_around(uint32_t v) const;
   std::vector<RegionVertex> positions_along(uint32_t v) const;
   bool flip(uint32_t triangle, size_t edge, MeshChange& change);

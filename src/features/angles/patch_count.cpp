@@ -24,7 +24,7 @@ constexpr int64_t kLeastShare = 10;  ///< a pass that meets less than one part i
 /// Each edge between vertices off curves, by its length beside the one aimed at there.
 std::vector<uint64_t> PatchMesh::edges_by_length() const {
   using Kind = RegionVertex::Kind;
-  const EdgeLengths& lengths = cut_->surface.lengths;
+  const EdgeLengths& lengths = lookup_->cut().surface.lengths;
   std::vector<std::pair<double, uint64_t>> out;
   for (const RegionTriangle& t : triangles())
     for (size_t i = 0; i < 3; ++i) {
@@ -102,7 +102,7 @@ void PatchMesh::recount_edges(const std::vector<uint64_t>& edges, size_t pass, i
 }
 
 void PatchMesh::meet_count(const Context& context) {
-  if (surplus() != 0) keep_apart(cut_->longest_edge_q8);
+  if (surplus() != 0) keep_apart(lookup_->cut().longest_edge_q8);
   for (size_t pass = 0; surplus() != 0 && pass < kMostPasses; ++pass) {
     const int64_t before = surplus();
     std::vector<uint64_t> edges = edges_by_length();

@@ -56,28 +56,23 @@ uint32_t curve_of(const CutSurface& cut, const WholeCurves& ends, const RegionVe
   return found != ends.end() && found->first == key ? found->second : 0;
 }
 
-std::vector<RegionVertex> vertices_of(const CutSurface& cut, const SeedSet& seeds, const JoinedMesh& joined) {
+std::vector<RegionVertex> vertices_of(const CutLookup& lookup, const SeedSet& seeds, const JoinedMesh& joined) {
   std::vector<RegionVertex> vertices(size_t(joined.mesh.position.size()));
-  std::vector<std::pair<uint32_t, size_t>> on_curve(cut.copies_first.size() - 1, {kNone, 0});  // per place
-  for (uint32_t c = 0; c < cut.curves.size(); ++c)
-    for (size_t i = 0; i < cut.curves[c].place.size(); ++i) on_curve[cut.curves[c].place[i]] = {c, i};
   for (int64_t s = seeds.size() - 1; s >= 0; --s) {  // of copies the first counts
     RegionVertex& v = vertices[joined.vertex_of[s]];
     const PointQ8 p = joined.mesh.position[joined.vertex_of[s]];
+    v = lookup.vertex_at(seeds.home[s]);
     v.position = {double(p.x), double(p.y), double(p.z)};
-    v.home = seeds.home[s];
-    const uint32_t place = s < seeds.fixed.count ? cut.place[v.home] : kNone;
-    if (place == kNone) continue;
-    v.kind = place < cut.corner_count ? RegionVertex::Kind::corner : RegionVertex::Kind::on_curve;
-    std::tie(v.curve, v.at) = on_curve[place];
+    if (s >= seeds.fixed.count) v.kind = RegionVertex::Kind::free;
   }
   return vertices;
 }
 
 /// The borders of the open mesh are on curves.
-EditableMesh joined_mesh(const CutSurface& cut, const SeedSet& seeds, const DualMesh& open) {
+EditableMesh joined_mesh(const CutLookup& lookup, const SeedSet& seeds, const DualMesh& open) {
+  const CutSurface& cut = lookup.cut();
   const JoinedMesh joined = join_patches(open, seeds.fixed);
-  std::vector<RegionVertex> vertices = vertices_of(cut, seeds, joined);
+  std::vector<RegionVertex> vertices = vertices_of(lookup, seeds, joined);
   std::vector<RegionTriangle> triangles;
   MeshTriangles corners;  // of the open mesh
   for (const TriangleIndices& i : open.triangles) {
@@ -100,12 +95,14 @@ EditableMesh joined_mesh(const CutSurface& cut, const SeedSet& seeds, const Dual
 }  // namespace
 
 PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options)
-    : PatchMesh(cut, joined_mesh(cut, *OnHost<SeedSet>(made.seeds), *OnHost<DualMesh>(made.mesh)), options) {}
+    : PatchMesh(std::make_shared<CutLookup>(cut), made, options) {}
 
-PatchMesh::PatchMesh(const CutSurface& cut, EditableMesh mesh, const JoinOptions& options)
+PatchMesh::PatchMesh(std::shared_ptr<const CutLookup> lookup, const SeededMesh& made, const JoinOptions& options)
+    : PatchMesh(lookup, joined_mesh(*lookup, *OnHost<SeedSet>(made.seeds), *OnHost<DualMesh>(made.mesh)), options) {}
+
+PatchMesh::PatchMesh(std::shared_ptr<const CutLookup> lookup, EditableMesh mesh, const JoinOptions& options)
     : EditableMesh(std::move(mesh)),
-      cut_(&cut),
-      lookup_(std::make_shared<CutLookup>(cut)),
+      lookup_(std::move(lookup)),
       is_hopeless_(triangles().size(), 0),
       options_(options),
       tries_(options_.tries_per_vertex * std::max(vertex_count(), kFewTries)) {}
@@ -241,7 +238,7 @@ std::vector<uint32_t> PatchMesh::take_apart(std::vector<uint32_t>& triangles) co
 }
 
 bool PatchMesh::improve(std::vector<uint32_t> triangles) {
-  keep_apart(cut_->longest_edge_q8);
+  keep_apart(lookup_->cut().longest_edge_q8);
   bool has_changed = false;
   while (!triangles.empty()) {
     const auto is_done = [&](uint32_t t) { return sine(this->triangles()[t]) >= kPoorSine || is_hopeless_[t]; };
@@ -293,8 +290,8 @@ JoinedPatches PatchMesh::joined() const {
     std::array<uint32_t, 3> i{number[t.corner[0]], number[t.corner[1]], number[t.corner[2]]};
     for (size_t k = 0; k < 3; ++k)
       if (t.curve[k] != kNone)
-        out.features.curve_edges.push_back(
-            {{std::min(i[k], i[(k + 1) % 3]), std::max(i[k], i[(k + 1) % 3])}, cut_->curves[t.curve[k]].curve});
+        out.features.curve_edges.push_back({{std::min(i[k], i[(k + 1) % 3]), std::max(i[k], i[(k + 1) % 3])},
+                                            lookup_->cut().curves[t.curve[k]].curve});
     std::rotate(i.begin(), std::min_element(i.begin(), i.end()), i.end());
     triangles.push_back({i, t.patch});
   }

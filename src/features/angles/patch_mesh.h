@@ -34,7 +34,7 @@ class PatchMesh : public EditableMesh {
  public:
   PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options);
   /// Of such a mesh, of many triangles; vertices without triangles are none of it.
-  PatchMesh(const CutSurface& cut, EditableMesh mesh, const JoinOptions& options);
+  PatchMesh(std::shared_ptr<const CutLookup> lookup, EditableMesh mesh, const JoinOptions& options);
 
   /// Triangles with an angle below 30 degrees, the worst first.
   std::vector<uint32_t> poor_triangles() const;
@@ -83,7 +83,8 @@ class PatchMesh : public EditableMesh {
   std::optional<MeshRegion> improved(const MeshRegion& start) const;
   std::optional<MeshRegion> recounted(const MeshRegion& start) const;
 
-  const CutSurface* cut_;
+  PatchMesh(std::shared_ptr<const CutLookup> lookup, const SeededMesh& made, const JoinOptions& options);
+
   std::shared_ptr<const CutLookup> lookup_;
   std::vector<char> is_hopeless_;      ///< per triangle: nothing changed since it was tried
   std::vector<uint32_t> replaced_at_;  ///< per vertex when one of its triangles was replaced last

@@ -24,7 +24,8 @@ class CollapsingMesh {
   using Ring = std::vector<uint32_t>;  ///< neighbours of a vertex, ascending
 
  protected:
-  static constexpr int kMostSweeps = 8;  ///< each with vertices none of which are neighbours, so that what is left is even
+  static constexpr int kMostSweeps =
+      8;  ///< each with vertices none of which are neighbours, so that what is left is even
 
   struct Scratch {
     Ring ring, other;
@@ -64,8 +65,8 @@ class CollapsingMesh {
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
   }
 
-  /// Whether a vertex may go into a neighbour: the topology stays, triangles stay short and fit. Lists the neighbours of
-  /// that in `other`.
+  /// Whether a vertex may go into a neighbour: the topology stays, triangles stay short and fit. Lists the neighbours
+  /// of that in `other`.
   bool may_go(uint32_t v, const Ring& ring, uint32_t into, Ring& other) const {
     const Square most_sq = self().longest_sq(into);
     if (std::any_of(ring.begin(), ring.end(), [&](uint32_t w) { return self().distance_sq(w, into) > most_sq; }))
@@ -126,7 +127,7 @@ class CollapsingMesh {
     last_[vertex] = last;
   }
 
-  std::vector<uint32_t> next_;          ///< per corner the next one of its vertex, those of triangles that are gone, too
+  std::vector<uint32_t> next_;  ///< per corner the next one of its vertex, those of triangles that are gone, too
   std::vector<uint32_t> first_, last_;  ///< per vertex; none: it is gone
 };
 

@@ -78,7 +78,8 @@ class RelaxedPart {
       for (uint32_t& v : t.corner) v = number[v];
       triangles_.push_back(t);
     }
-    return PatchMesh(cut_, {std::move(vertices_), std::move(triangles_), EditableMesh::Size::many}, options);
+    return PatchMesh(coarse.shared_lookup(), {std::move(vertices_), std::move(triangles_), EditableMesh::Size::many},
+                     options);
   }
 
  private:

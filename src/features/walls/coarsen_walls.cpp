@@ -15,7 +15,7 @@ PatchMesh coarsen_walls(const CutSurface& cut, const WallTriangles& walls, const
     WallMesh mesh(cut, walls);
     coarsen(mesh, options.vertices, context);
     even_out(mesh, options.vertices, context);
-    return PatchMesh(cut, std::move(mesh), options);
+    return PatchMesh(mesh.shared_lookup(), std::move(mesh), options);
   });
 }
 

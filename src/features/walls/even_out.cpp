@@ -9,7 +9,6 @@
 #include "core/watched.h"
 #include "features/walls/coarsen.h"
 #include "features/walls/wall_blocks.h"
-#include "features/walls/wall_places.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
@@ -26,7 +25,7 @@ constexpr int64_t kMostSplits = 16;     ///< one vertex in so many, at once
 class Evening {
  public:
   Evening(WallMesh& mesh, const WallBlocks& blocks, size_t block)
-      : mesh_(mesh), places_(mesh), blocks_(blocks), block_(block) {}
+      : mesh_(mesh), places_(mesh.lookup()), blocks_(blocks), block_(block) {}
 
   void flip_edges(double cost_of_valence) {
     for (const uint32_t v : blocks_.vertices_of(block_)) {
@@ -73,13 +72,14 @@ class Evening {
     mesh_.list_targets(v, ends_);
     if (ends_.size() != 2) return;
     const RegionVertex from = mesh_.vertex(v);
-    const double way = (places_.way_to(ends_[0], from) + places_.way_to(ends_[1], from)) / 2;
+    const double way =
+        (places_.way_between(from, mesh_.vertex(ends_[0])) + places_.way_between(from, mesh_.vertex(ends_[1]))) / 2;
     for (const double part : {1., .5})
       if (move(v, places_.along(from, part * way))) return;
   }
 
   WallMesh& mesh_;
-  const WallPlaces places_;
+  const CutLookup& places_;
   const WallBlocks& blocks_;
   size_t block_;
   std::vector<uint32_t> ends_, around_;
@@ -123,10 +123,10 @@ bool split_edge(WallMesh& mesh, uint32_t u, uint32_t v, MeshChange& scratch) {
   if (mesh.vertex(u).kind != kind) std::swap(u, v);
   if (mesh.vertex(u).kind != kind) return false;
   const RegionVertex& from = mesh.vertex(u);
-  const WallPlaces places(mesh);
+  const CutLookup& places = mesh.lookup();
   const std::optional<RegionVertex> middle = kind == Kind::free
                                                  ? places.on_surface_near(from, 0.5 * (mesh.at(u) + mesh.at(v)))
-                                                 : places.along(from, places.way_to(v, from) / 2);
+                                                 : places.along(from, places.way_between(from, mesh.vertex(v)) / 2);
   return middle && mesh.split(u, v, *middle, scratch);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/parallel_ranges.h"
+#include "features/mesh/editable_mesh.h"
 #include "features/mesh/refine_mesh.h"
 #include "geometry/world_vector.h"
 #include "measure/box_tree.h"
@@ -17,8 +18,6 @@ constexpr size_t kMostSamples = 16384;
 constexpr double kNear = 0.5;      ///< edges to another wall
 constexpr double kBeside = 0.05;   ///< edges from a wall within which it is not looked for: the wall itself is there
 constexpr double kStraight = 0.9;  ///< length of the mean normal within an edge, above which a wall does not bend
-
-PointQ8 steps(const WorldPoint& p) { return {int32_t(p.x), int32_t(p.y), int32_t(p.z)}; }
 
 class Walls {
  public:
@@ -43,7 +42,7 @@ class Walls {
     std::vector<BoxQ8> boxes(fine.triangles.size());
     for_each_index(size_t(0), boxes.size(), [&](size_t t) {
       const auto& [a, b, c] = fine.triangles[t];
-      boxes[t] = box_of(steps(fine.position[a]), steps(fine.position[b]), steps(fine.position[c]));
+      boxes[t] = box_of(rounded_down(fine.position[a]), rounded_down(fine.position[b]), rounded_down(fine.position[c]));
     });
     return boxes;
   }
@@ -54,17 +53,17 @@ class Walls {
   uint32_t patch(size_t t) const { return cut_.surface.patch[cut_.corner[3 * t]]; }
 
   bool has_wall_along(const WorldPoint& from, const WorldPoint& way) const {
-    const PointQ8 p = steps(from + kBeside * way), q = steps(from + kNear * way);
+    const PointQ8 p = rounded_down(from + kBeside * way), q = rounded_down(from + kNear * way);
     return !tree_.for_all_meeting(box_of(p, q), [&](uint32_t t) {
       const auto& [a, b, c] = fine_.triangles[t];
-      return !segment_meets_triangle(p, q, steps(fine_.position[a]), steps(fine_.position[b]),
-                                     steps(fine_.position[c]));
+      return !segment_meets_triangle(p, q, rounded_down(fine_.position[a]), rounded_down(fine_.position[b]),
+                                     rounded_down(fine_.position[c]));
     });
   }
   bool bends_at(const WorldPoint& middle, uint32_t of_patch) const {
     WorldPoint sum{0, 0, 0};
     double doubled = 0;
-    const PointQ8 at = steps(middle);
+    const PointQ8 at = rounded_down(middle);
     tree_.for_all_meeting(widened(box_of(at, at), int32_t(edge_q8_ / 2)), [&](uint32_t t) {
       if (patch(t) != of_patch) return true;
       sum = sum + normal(t);

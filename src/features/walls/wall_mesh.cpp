@@ -29,7 +29,6 @@ double cell_between(const FineMesh& fine, const MeshTriangles& triangles, double
   return std::sqrt(sum / double(triangles.size()) * edge_q8);
 }
 
-/// Off curves so far.
 std::vector<RegionVertex> vertices_of(const CutLookup& lookup, size_t count) {
   const CutSurface& cut = lookup.cut();
   std::vector<RegionVertex> vertices(count);
@@ -40,30 +39,28 @@ std::vector<RegionVertex> vertices_of(const CutLookup& lookup, size_t count) {
     const uint32_t number = cut.fine->triangles[c / 3][c % 3], copy = cut.corner[c];
     if (number >= count || has_place[number]) continue;
     has_place[number] = cut.place[copy] != kNone;
-    vertices[number].home = copy;
-    vertices[number].position = lookup.position(copy);
+    vertices[number] = lookup.vertex_at(copy);
   }
   return vertices;
 }
 
-/// Sets what is on a curve, and adds its edges.
-void list_curve(uint32_t number, const CurvePath& path, std::vector<RegionVertex>& vertices, Edges& edges) {
-  std::vector<uint32_t> along;
-  for (size_t i = 0; i < path.vertex.size(); ++i) {
-    if (path.vertex[i] >= vertices.size()) continue;
-    along.push_back(path.vertex[i]);
-    RegionVertex& v = vertices[path.vertex[i]];
-    const bool is_end = !path.is_loop && (i == 0 || i + 1 == path.vertex.size());
-    v.kind = is_end ? Kind::corner : Kind::on_curve;
-    v.curve = number;
-    v.at = i;
+/// Those of a mesh with so many vertices; ascending.
+Edges edges_on_curves(const std::vector<CurvePath>& paths, size_t vertices) {
+  Edges edges;
+  for (uint32_t c = 0; c < paths.size(); ++c) {
+    std::vector<uint32_t> along;
+    for (const uint32_t v : paths[c].vertex)
+      if (v < vertices) along.push_back(v);
+    for (size_t i = 1; i < along.size(); ++i) edges.push_back({edge_key(along[i - 1], along[i]), c});
+    if (paths[c].is_loop) edges.push_back({edge_key(along.back(), along.front()), c});
   }
-  for (size_t i = 1; i < along.size(); ++i) edges.push_back({edge_key(along[i - 1], along[i]), number});
-  if (path.is_loop) edges.push_back({edge_key(along.back(), along.front()), number});
+  std::sort(edges.begin(), edges.end());
+  return edges;
 }
 
-std::vector<RegionTriangle> triangles_of(const CutLookup& lookup, const WallTriangles& walls, const Edges& on_curve) {
+std::vector<RegionTriangle> triangles_of(const CutLookup& lookup, const WallTriangles& walls) {
   const CutSurface& cut = lookup.cut();
+  const Edges on_curve = edges_on_curves(cut.fine->paths, walls.vertices);
   const std::vector<uint32_t>& source = cut.fine->source_face;
   std::vector<uint32_t> patch_of_face(size_t(*std::max_element(source.begin(), source.end())) + 1);
   for (size_t t = 0; t < source.size(); ++t) patch_of_face[source[t]] = lookup.patch(cut.corner[3 * t]);
@@ -80,15 +77,6 @@ std::vector<RegionTriangle> triangles_of(const CutLookup& lookup, const WallTria
   return out;
 }
 
-EditableMesh mesh_of(const CutLookup& lookup, const WallTriangles& walls) {
-  std::vector<RegionVertex> vertices = vertices_of(lookup, walls.vertices);
-  const std::vector<CurvePath>& paths = lookup.cut().fine->paths;
-  Edges on_curve;
-  for (uint32_t c = 0; c < paths.size(); ++c) list_curve(c, paths[c], vertices, on_curve);
-  std::sort(on_curve.begin(), on_curve.end());
-  return {std::move(vertices), triangles_of(lookup, walls, on_curve), EditableMesh::Size::many};
-}
-
 }  // namespace
 
 WallMesh::WallMesh(const CutSurface& cut, const WallTriangles& walls)
@@ -97,7 +85,8 @@ WallMesh::WallMesh(const CutSurface& cut, const WallTriangles& walls)
 }
 
 WallMesh::WallMesh(std::shared_ptr<const CutLookup> lookup, const WallTriangles& walls)
-    : EditableMesh(mesh_of(*lookup, walls)), lookup_(std::move(lookup)) {}
+    : EditableMesh(vertices_of(*lookup, walls.vertices), triangles_of(*lookup, walls), Size::many),
+      lookup_(std::move(lookup)) {}
 
 double WallMesh::aimed_at(uint32_t v) const {
   return lookup_->cut().is_requested ? lookup_->edge_length(vertex(v).home) : 1;

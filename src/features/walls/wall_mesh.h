@@ -30,6 +30,7 @@ class WallMesh : public EditableMesh {
   WallMesh(const CutSurface& cut, const WallTriangles& walls);
 
   const CutLookup& lookup() const { return *lookup_; }
+  std::shared_ptr<const CutLookup> shared_lookup() const { return lookup_; }
   /// The length of edges that is aimed at, where lengths were asked for; 1 where edges are to be as long as each other.
   double aimed_at(uint32_t v) const;
 
