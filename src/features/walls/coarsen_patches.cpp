@@ -8,7 +8,6 @@
 #include "features/mesh/feature_mesh.h"
 #include "features/walls/coarsen.h"
 #include "features/walls/even_out.h"
-#include "geometry/half_edges.h"
 
 namespace isoshell {
 namespace {
@@ -165,19 +164,14 @@ std::vector<uint32_t> patches_met(const RelaxedPart& relaxed, const std::vector<
                                   WallMesh& coarse) {
   coarse.avoid(coarse.lookup().cut().longest_edge_q8, relaxed.corners(numbered));
   std::vector<uint32_t> patches;
-  std::vector<std::pair<uint64_t, uint32_t>> edges;  ///< and the curve that each is on
-  for (const RegionTriangle& t : coarse.triangles()) {
-    if (t.is_gone()) continue;
-    coarse.for_each_met(t, [&](uint32_t other) { patches.push_back(numbered[other].patch); });
-    for (size_t i = 0; i < 3; ++i) edges.push_back({edge_key(t.corner[i], t.corner[(i + 1) % 3]), t.curve[i]});
-  }
-  std::sort(edges.begin(), edges.end());
+  for (const RegionTriangle& t : coarse.triangles())
+    if (!t.is_gone()) coarse.for_each_met(t, [&](uint32_t other) { patches.push_back(numbered[other].patch); });
   for (const RegionTriangle& t : numbered)
     for (size_t i = 0; i < 3; ++i) {
-      const uint64_t edge = edge_key(t.corner[i], t.corner[(i + 1) % 3]);
-      const auto found = std::lower_bound(edges.begin(), edges.end(), std::make_pair(edge, uint32_t(0)));
-      const bool is_there = found != edges.end() && found->first == edge;
-      if (is_there && (t.curve[i] == kNone || found->second != t.curve[i])) patches.push_back(t.patch);
+      const uint32_t u = t.corner[i], v = t.corner[(i + 1) % 3];
+      if (std::max(u, v) >= kFirstOfRelaxed) continue;
+      const std::optional<uint32_t> curve = coarse.curve_between(u, v);
+      if (curve && (t.curve[i] == kNone || *curve != t.curve[i])) patches.push_back(t.patch);
     }
   return patches;
 }
