@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "core/parallel_ranges.h"
 #include "features/mesh/edge_subdivision.h"
@@ -157,35 +156,23 @@ class FlatEdges {
   const std::vector<uint64_t>& avoided_;
 };
 
-/// Edges of more than two triangles, ascending.
-std::vector<uint64_t> crowded_edges(const EdgeSides& sides) {
-  std::vector<uint64_t> edges;
-  for_each_edge(sides, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
-    if (on_edge.size > 2) edges.push_back(edge_key(u, v));
-  });
-  return edges;
-}
-
-bool has_edge(const EdgeSides& sides, uint64_t edge) {
+int64_t triangles_at(const EdgeSides& sides, uint64_t edge) {
   const View<const EdgeSide> from = sides.in(int64_t(edge >> 32));
-  const auto at = std::lower_bound(from.begin(), from.end(), EdgeSide{uint32_t(edge), 0});
-  return at != from.end() && at->larger_end == uint32_t(edge);
+  return std::count_if(from.begin(), from.end(), [&](const EdgeSide& s) { return s.larger_end == uint32_t(edge); });
 }
 
-/// Whether flips may have made an edge that others have, too: there was one, or they made it twice.
-bool may_be_crowded(const EdgeSides& before, std::vector<uint64_t> made) {
+/// Those of the edges that flips made which have more than two triangles now and had not: others had them, too, or they
+/// were made twice.
+std::vector<uint64_t> crowded_of(const EdgeSides& before, const FineMesh& mesh, std::vector<uint64_t> made) {
   tbb::parallel_sort(made.begin(), made.end());
-  return std::adjacent_find(made.begin(), made.end()) != made.end() ||
-         std::any_of(made.begin(), made.end(), [&](uint64_t edge) { return has_edge(before, edge); });
-}
-
-/// Adds to `crowded` the crowded edges that flips made. Whether there are any.
-bool add_crowded(const EdgeSides& before, const EdgeSides& after, std::vector<uint64_t>& crowded) {
-  const std::vector<uint64_t> now = crowded_edges(after), then = crowded_edges(before);
-  const size_t known = crowded.size();
-  std::set_difference(now.begin(), now.end(), then.begin(), then.end(), std::back_inserter(crowded));
-  std::sort(crowded.begin(), crowded.end());
-  return crowded.size() > known;
+  std::vector<uint64_t> crowded;
+  for (size_t i = 0; i < made.size(); ++i)
+    if ((i > 0 && made[i] == made[i - 1]) || triangles_at(before, made[i]) > 0) crowded.push_back(made[i]);
+  if (crowded.empty()) return crowded;
+  const EdgeSides now = find_edge_sides(mesh.triangles, mesh.position.size());
+  const auto are_few = [&](uint64_t edge) { return triangles_at(now, edge) <= 2 || triangles_at(before, edge) > 2; };
+  crowded.erase(std::remove_if(crowded.begin(), crowded.end(), are_few), crowded.end());
+  return crowded;
 }
 
 }  // namespace
@@ -194,15 +181,17 @@ FineMesh flip_flat_edges(FineMesh mesh, MeshTwins* twins) {
   const MeshTriangles before = mesh.triangles;
   const EdgeSides sides = find_edge_sides(before, mesh.position.size());
   const std::vector<uint64_t> on_paths = path_edges(mesh.paths);
-  std::vector<uint64_t> crowded;  // what both sides of a thin part would make
+  std::vector<uint64_t> avoided;  // what both sides of a thin part would make
   for (;;) {
     MeshTwins found = find_twins(before, sides, on_paths);
-    const std::vector<uint64_t> made = FlatEdges(mesh, found, crowded).flip_all();
-    if (!may_be_crowded(sides, made)) {
+    const std::vector<uint64_t> made = FlatEdges(mesh, found, avoided).flip_all();
+    const std::vector<uint64_t> crowded = crowded_of(sides, mesh, made);
+    if (crowded.empty()) {
       if (twins) *twins = std::move(found);
       return mesh;
     }
-    if (!add_crowded(sides, find_edge_sides(mesh.triangles, mesh.position.size()), crowded)) return mesh;
+    avoided.insert(avoided.end(), crowded.begin(), crowded.end());
+    std::sort(avoided.begin(), avoided.end());
     mesh.triangles = before;
   }
 }

@@ -9,8 +9,7 @@ namespace isoshell {
 /// their flat faces, whose vertices are no neighbours of those that are near to them, and cells of seeds would come in
 /// pieces. The surface stays as it is to half a step of the lattice, edges of paths stay, no edge becomes longer than
 /// those around it, and none comes to have more than two triangles. Result: independent of the order of triangles.
-/// Cost: a sort of the half-edges. `twins` become those of the result between paths; they stay empty where an edge was
-/// made twice, or beside another one with the same ends.
+/// Cost: a sort of the half-edges. `twins` become those of the result between paths.
 FineMesh flip_flat_edges(FineMesh mesh, MeshTwins* twins = nullptr);
 
 }  // namespace isoshell
