@@ -273,6 +273,20 @@ TEST_CASE("editable mesh: a collapse, a split or a move that lets triangles meet
   CHECK(state_of(flat) == before_split);
 }
 
+TEST_CASE("editable mesh: a move takes a vertex and its triangles along, but no corner and nothing that is kept",
+          "[editable_mesh]") {
+  Parts kept = grid();
+  kept.vertices[kA].is_kept = true;
+  EditableMesh mesh = grid().mesh(), staying = kept.mesh();
+  const auto before = state_of(staying);
+  CHECK(move(mesh, kA, vertex_at(240, 272, 0)));
+  CHECK(mesh.at(kA) == WorldPoint{240, 272, 0});
+  CHECK(area_of(mesh) == kAreaOfGrid);
+  CHECK(!move(mesh, grid_at(0, 1), vertex_at(0, 300, 0)));
+  CHECK(!move(staying, kA, vertex_at(240, 272, 0)));
+  CHECK(state_of(staying) == before);
+}
+
 TEST_CASE("editable mesh: a split puts a vertex into an edge, on its curve", "[editable_mesh]") {
   for (const Size size : {Size::few, Size::many}) {
     Parts parts = grid();

@@ -66,6 +66,4 @@ class MeshRegion : public EditableMesh {
   double follows_;                    ///< cosine between normals of triangles and surface, below which it costs
 };
 
-constexpr double kMostCost = 1e6;  ///< of one triangle: a degenerate one
-
 }  // namespace isoshell

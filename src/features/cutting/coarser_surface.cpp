@@ -15,8 +15,6 @@ namespace isoshell {
 namespace {
 
 // In the edge lengths of the seeds that the surface is for.
-constexpr double kShort = 0.2;     ///< inside of patches, a vertex with a shorter edge goes
-constexpr double kLongest = 0.45;  ///< and leaves none that is longer
 constexpr double kLongestOnCurve = 0.28;
 constexpr double kLeastCosine = 0.5;     ///< between a triangle's normal and those of the surface at its corners
 constexpr int64_t kFewestPerSeed = 6;    ///< vertices inside of a patch whose vertices go
@@ -76,6 +74,7 @@ class ThinnedTriangles : public CollapsingMesh<ThinnedTriangles, int64_t> {
 
  private:
   friend CollapsingMesh;
+  static constexpr double kLongest = 0.45;
 
   int64_t distance_sq(uint32_t u, uint32_t v) const {
     return distance_sq_q16(surface_.position[u], surface_.position[v]);
@@ -86,8 +85,6 @@ class ThinnedTriangles : public CollapsingMesh<ThinnedTriangles, int64_t> {
     return int64_t(length * length);
   }
 
-  int64_t short_sq(uint32_t v) const { return square_of(kShort, v); }
-  int64_t longest_sq(uint32_t v) const { return square_of(kLongest, v); }
   static bool may_take(uint32_t) { return true; }
 
   /// Whether the triangle of a corner, once that is another vertex, faces as the surface does at its corners.

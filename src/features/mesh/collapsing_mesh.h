@@ -14,10 +14,11 @@
 namespace isoshell {
 
 /// `Surface`, which this is the base of, knows where vertices are: squared distances distance_sq(u, v), of type Square,
-/// and squares of edges that are short at a vertex, short_sq(v), or as long as any may become, longest_sq(v); which
-/// vertices others may go into, may_take(v); what becomes of a triangle, fits(corner, into), once its corner is another
-/// vertex; and how a vertex goes where may_go allows it, go(v, into, scratch). Corner 3 t + i is that at place i of
-/// triangle t. Several threads may take in vertices at once that have no neighbours in common.
+/// and squares of lengths in terms of the edge aimed at, square_of(edges, v); the longest edge that it lets become,
+/// kLongest, in these terms; which vertices others may go into, may_take(v); what becomes of a triangle, fits(corner,
+/// into), once its corner is another vertex; and how a vertex goes where may_go allows it, go(v, into, scratch). Corner
+/// 3 t + i is that at place i of triangle t. Several threads may take in vertices at once that have no neighbours in
+/// common.
 template <class Surface, class Square>
 class CollapsingMesh {
  public:
@@ -68,7 +69,7 @@ class CollapsingMesh {
   /// Whether a vertex may go into a neighbour: the topology stays, triangles stay short and fit. Lists the neighbours
   /// of that in `other`.
   bool may_go(uint32_t v, const Ring& ring, uint32_t into, Ring& other) const {
-    const Square most_sq = self().longest_sq(into);
+    const Square most_sq = self().square_of(Surface::kLongest, into);
     if (std::any_of(ring.begin(), ring.end(), [&](uint32_t w) { return self().distance_sq(w, into) > most_sq; }))
       return false;
     find_ring(into, other);
@@ -86,7 +87,7 @@ class CollapsingMesh {
   /// Into the neighbour that leaves the shortest edges, of equal ones the first, where the vertex has a short edge.
   template <class S>
   bool thin_inside(uint32_t v, S& s) {
-    const Square least_sq = self().short_sq(v);
+    const Square least_sq = self().square_of(kShort, v);
     const auto is_short = [&](uint32_t w) { return self().distance_sq(v, w) < least_sq; };
     if (s.ring.size() > kMostNeighbours || std::none_of(s.ring.begin(), s.ring.end(), is_short)) return false;
     s.choice.clear();
@@ -118,6 +119,7 @@ class CollapsingMesh {
   std::vector<char> stays_;                         ///< per vertex: for a sweep
 
  private:
+  static constexpr double kShort = 0.2;          ///< edges aimed at: off curves, a vertex with a shorter one goes
   static constexpr size_t kMostNeighbours = 16;  ///< of a vertex that goes
 
   const Surface& self() const { return static_cast<const Surface&>(*this); }

@@ -134,6 +134,7 @@ class EditableMesh {
   template <class Allow>
   bool move(uint32_t v, const RegionVertex& to, MeshChange& change, Allow allow) {
     const RegionVertex before = vertices_[v];
+    if (before.is_kept || before.kind == RegionVertex::Kind::corner) return false;
     list_around(v, change);
     place(v, to);
     if (allow() && commit(change)) return true;
@@ -202,6 +203,7 @@ class EditableMesh {
 };
 
 constexpr double kPoorSine = 0.5;          ///< of 30 degrees
+constexpr double kMostCost = 1e6;          ///< of one triangle: a degenerate one
 constexpr double kEnough = 1 - 1. / 1024;  ///< of the cost before, or a change is not worth it
 /// The sine of the smallest angle of a triangle.
 double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c);

@@ -21,8 +21,6 @@ namespace isoshell {
 namespace {
 
 // In edges of the result.
-constexpr double kShort = 0.2;                    ///< off curves, a vertex with a shorter edge goes
-constexpr double kLongest = 0.4;                  ///< and leaves none that is longer
 constexpr double kLongestOnCurve = 0.15;          ///< places are what vertices of curves move to
 constexpr double kCellOfSpace = 0.2;              ///< between the edges that there are and those that are left
 constexpr double kCell = 8;                       ///< vertices of one task are in a cube of that size
@@ -84,6 +82,8 @@ class ThinnedWalls : public CollapsingMesh<ThinnedWalls, double> {
 
  private:
   friend CollapsingMesh;
+  static constexpr double kLongest = 0.4;
+
   struct CubeScratch : Scratch {
     CubeScratch(const Cubes& of, int64_t in, View<const uint32_t> all, double cell_q8)
         : cubes(of), cube(in), triangles(all), space(cell_q8, size_t(all.size)) {}
@@ -98,9 +98,7 @@ class ThinnedWalls : public CollapsingMesh<ThinnedWalls, double> {
 
   const WorldPoint& at(uint32_t v) const { return mesh_.vertices[v]; }
   double distance_sq(uint32_t u, uint32_t v) const { return isoshell::distance_sq(at(u), at(v)); }
-  double square_of(double edges) const { return edges * edges * edge_world_ * edge_world_; }
-  double short_sq(uint32_t) const { return square_of(kShort); }
-  double longest_sq(uint32_t) const { return square_of(kLongest); }
+  double square_of(double edges, uint32_t) const { return edges * edges * edge_world_ * edge_world_; }
   bool is_on_curve(uint32_t v) const { return curve_[v] != kOffCurves && curve_[v] != kStays; }
   /// Small walls keep some vertices inside so.
   bool may_take(uint32_t v) const { return curve_[v] == kOffCurves; }
@@ -268,7 +266,7 @@ class ThinnedWalls : public CollapsingMesh<ThinnedWalls, double> {
 
   bool thin_on_curve(uint32_t v, CubeScratch& s) {
     const auto [before, after] = beside_[curve_[v]];
-    if (before == after || distance_sq(before, after) > square_of(kLongestOnCurve)) return false;
+    if (before == after || distance_sq(before, after) > square_of(kLongestOnCurve, v)) return false;
     for (const uint32_t into : {before, after}) {
       find_ring(into, s.other);
       if (std::binary_search(s.other.begin(), s.other.end(), other_beside(v, into))) continue;

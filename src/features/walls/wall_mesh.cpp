@@ -16,7 +16,6 @@ using Edges = std::vector<std::pair<uint64_t, uint32_t>>;  ///< keys, and the cu
 
 constexpr double kFollows = 0.9;  ///< cosine between a triangle's normal and the surface's at its corners
 constexpr double kCostOfTurn = 4;
-constexpr double kMostCostOfWall = 1e6;
 constexpr int kRegularInside = 6, kRegularOnCurve = 3;  ///< triangles around a vertex in a patch
 constexpr double kLeastTurn = 0.5;                      ///< cosine between normals before and after a change
 constexpr double kLeastSine = 0.17;  ///< of the angles of a triangle that a change makes, where it had wider ones
@@ -95,10 +94,10 @@ double WallMesh::aimed_at(uint32_t v) const {
 double WallMesh::cost(const RegionTriangle& t) const {
   const WorldPoint &a = at(t.corner[0]), &b = at(t.corner[1]), &c = at(t.corner[2]);
   const double doubled = length(normal(t));
-  if (!(doubled > 0)) return kMostCostOfWall;
+  if (!(doubled > 0)) return kMostCost;
   const double shape = (distance_sq(a, b) + distance_sq(b, c) + distance_sq(c, a)) / (kTwoRootThree * doubled);
   const double turned = std::max(0., kFollows - lookup_->cosine(*this, t));
-  return std::min(kMostCostOfWall, shape - 1 + kCostOfTurn * turned * turned);
+  return std::min(kMostCost, shape - 1 + kCostOfTurn * turned * turned);
 }
 
 double WallMesh::cost_around(uint32_t v) const {
