@@ -87,10 +87,9 @@ RegionVertex MeshRegion::vertex_between(uint32_t u, uint32_t v, uint32_t curve, 
 }
 
 bool MeshRegion::split(uint32_t u, uint32_t v, const WorldPoint& near) {
-  const std::vector<uint32_t> around = triangles_of(u);
-  const auto first = std::find_if(around.begin(), around.end(), [&](uint32_t t) { return triangles()[t].has(v); });
-  if (first == around.end()) return false;
-  const RegionVertex middle = vertex_between(u, v, *curve_between(u, v), triangles()[*first].patch, near);
+  const uint32_t first = find_around(u, [&](const RegionTriangle& t) { return t.has(u) && t.has(v); });
+  if (first == kNone) return false;
+  const RegionVertex middle = vertex_between(u, v, *curve_between(u, v), triangles()[first].patch, near);
   if (middle.kind == RegionVertex::Kind::corner) return false;
   MeshChange change;
   if (!EditableMesh::split(u, v, middle, change, [] { return true; })) return false;

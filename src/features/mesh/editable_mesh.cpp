@@ -69,26 +69,12 @@ void EditableMesh::list_targets(uint32_t v, std::vector<uint32_t>& out) const {
   });
 }
 
-bool EditableMesh::is_edge(uint32_t u, uint32_t v) const {
-  bool is = false;
-  for_each_around(u, [&](uint32_t t) { is = is || triangles_[t].has(v); });
-  return is;
-}
-
 std::optional<uint32_t> EditableMesh::curve_between(uint32_t u, uint32_t v) const {
   std::optional<uint32_t> curve;
   for_each_side(u, v, [&](const Side& s) {
     if (!curve) curve = triangles_[s.triangle].curve[s.edge];
   });
   return curve;
-}
-
-WorldPoint EditableMesh::normal(const RegionTriangle& t) const {
-  return doubled_area(at(t.corner[0]), at(t.corner[1]), at(t.corner[2]));
-}
-
-double EditableMesh::sine(const RegionTriangle& t) const {
-  return t.is_gone() ? 1 : smallest_sine(at(t.corner[0]), at(t.corner[1]), at(t.corner[2]));
 }
 
 CornersOfTriangle EditableMesh::corners(const RegionTriangle& t) const {
@@ -134,21 +120,20 @@ bool EditableMesh::list_flip(uint32_t triangle, size_t edge, MeshChange& change)
   const RegionTriangle& t = triangles_[triangle];
   if (t.is_gone() || t.curve[edge] != kNone) return false;
   const uint32_t a = t.corner[edge], b = t.corner[(edge + 1) % 3], c = t.corner[(edge + 2) % 3];
-  Side other{};
-  size_t sides = 0;
-  for_each_side(a, b, [&](const Side& s) {
-    ++sides;
-    if (s.triangle != triangle) other = s;
-  });
-  const RegionTriangle& s = triangles_[other.triangle];
-  const uint32_t d = s.corner[(other.edge + 2) % 3];
-  if (sides != 2 || c == d || s.corner[other.edge] != b || s.patch != t.patch) return false;
+  const uint32_t other = find_around(b, [&](const RegionTriangle& s) { return s.edge_between(b, a) < 3; });
+  if (other == kNone) return false;
+  const RegionTriangle& s = triangles_[other];
+  const size_t back = s.edge_between(b, a);
+  const uint32_t d = s.corner[(back + 2) % 3];
+  if (c == d || s.patch != t.patch) return false;
   if (!vertices_[c].is_inner && !vertices_[d].is_inner) return false;
   change.clear();
-  change.replaced.assign({triangle, other.triangle});
-  change.number = change.replaced;
-  change.made.push_back({{a, d, c}, {s.curve[(other.edge + 1) % 3], kNone, t.curve[(edge + 2) % 3]}, t.patch});
-  change.made.push_back({{b, c, d}, {t.curve[(edge + 1) % 3], kNone, s.curve[(other.edge + 2) % 3]}, t.patch});
+  change.replaced.resize(2);
+  change.number.resize(2);
+  change.replaced[0] = change.number[0] = triangle;
+  change.replaced[1] = change.number[1] = other;
+  change.made.push_back({{a, d, c}, {s.curve[(back + 1) % 3], kNone, t.curve[(edge + 2) % 3]}, t.patch});
+  change.made.push_back({{b, c, d}, {t.curve[(edge + 1) % 3], kNone, s.curve[(back + 2) % 3]}, t.patch});
   return true;
 }
 

@@ -35,6 +35,12 @@ struct RegionTriangle {
 
   /// Its place stays, so that the others keep theirs.
   bool is_gone() const { return corner[0] == corner[1]; }
+  /// The edge from one vertex to another; 3 where it has none.
+  size_t edge_between(uint32_t u, uint32_t v) const {
+    for (size_t i = 0; i < 3; ++i)
+      if (corner[i] == u && corner[(i + 1) % 3] == v) return i;
+    return 3;
+  }
   bool has(uint32_t v) const { return corner[0] == v || corner[1] == v || corner[2] == v; }
 };
 
@@ -50,6 +56,9 @@ struct MeshChange {
 
   void clear() { replaced.clear(), made.clear(), number.clear(), fused.clear(); }
 };
+
+/// The sine of the smallest angle of a triangle.
+double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c);
 
 /// Edges have two triangles or, on curves, any number. A change keeps the topology of every region, the patches, the
 /// curves, and what is kept; no edge and no triangle comes to be there twice, and with `keep_apart` no triangle comes
@@ -85,15 +94,33 @@ class EditableMesh {
   }
   /// The vertex stays where it is from now on, and so do edges on curves between two that stay.
   void keep(uint32_t v) { vertices_[v].is_kept = true; }
+  /// The first triangle around a vertex that is so; kNone where none is. is(t) says no to those that do not have it.
+  template <class Is>
+  uint32_t find_around(uint32_t v, Is is) const {
+    if (around_.empty()) {
+      for (uint32_t t = 0; t < triangles_.size(); ++t)
+        if (is(triangles_[t])) return t;
+      return kNone;
+    }
+    for (const uint32_t t : around_[v])
+      if (is(triangles_[t])) return t;
+    return kNone;
+  }
   void list_neighbours(uint32_t v, std::vector<uint32_t>& out) const;
   /// Those that a vertex may be taken into, as far as its curve tells: of a corner none.
   void list_targets(uint32_t v, std::vector<uint32_t>& out) const;
-  bool is_edge(uint32_t u, uint32_t v) const;
+  bool is_edge(uint32_t u, uint32_t v) const {
+    return find_around(u, [&](const RegionTriangle& t) { return t.has(u) && t.has(v); }) != kNone;
+  }
   /// The curve of the edge between two vertices, kNone off curves; no value where there is no edge.
   std::optional<uint32_t> curve_between(uint32_t u, uint32_t v) const;
-  WorldPoint normal(const RegionTriangle& t) const;
+  WorldPoint normal(const RegionTriangle& t) const {
+    return doubled_area(at(t.corner[0]), at(t.corner[1]), at(t.corner[2]));
+  }
   /// Of the smallest angle; 1 where it is gone.
-  double sine(const RegionTriangle& t) const;
+  double sine(const RegionTriangle& t) const {
+    return t.is_gone() ? 1 : smallest_sine(at(t.corner[0]), at(t.corner[1]), at(t.corner[2]));
+  }
   CornersOfTriangle corners(const RegionTriangle& t) const;
 
   /// From now on no triangle comes to meet another one, as far as that is not so already. They are in cells of that
@@ -205,8 +232,6 @@ class EditableMesh {
 constexpr double kPoorSine = 0.5;          ///< of 30 degrees
 constexpr double kMostCost = 1e6;          ///< of one triangle: a degenerate one
 constexpr double kEnough = 1 - 1. / 1024;  ///< of the cost before, or a change is not worth it
-/// The sine of the smallest angle of a triangle.
-double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c);
 /// On the lattice.
 inline PointQ8 rounded_down(const WorldPoint& p) { return {int32_t(p.x), int32_t(p.y), int32_t(p.z)}; }
 
