@@ -164,7 +164,7 @@ def test_angles_beside_creases(run, tmp_path, claim):
     assert run(source, *options, "--features", "off").status == 0
 
 
-@claims("those around patches that are too small for the edges are left out, and each is named",
+@claims("the least creases, by turn times length, are left out, and each is named",
         "`--require features`")
 def test_lost_curves(run, tmp_path, claim):
     def cubes(n: int) -> Mesh:  # small ones on a large one

@@ -11,8 +11,8 @@
 #include "geometry/world_vector.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/readable.h"
+#include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
-#include "pipeline/patches/own_faces.h"
 #include "repair/holes/open_soup.h"
 
 namespace isoshell {

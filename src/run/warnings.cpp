@@ -86,7 +86,7 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
   const UnionReport& u = report.input.united;
   note(u.turned_components, "closed components that were inside out, turned outward");
   note(u.swallowed_components, "closed components dropped, they lie inside of others");
-  note(u.cut_faces, "faces cut where closed components meet, or pass through themselves; the result is their union");
+  note(u.cut_faces, "faces cut where closed components meet; the result is their union");
   note(u.separated_edges, "edges of more than two faces where surfaces touch, which were moved apart a little there");
   note(u.inner_surfaces, "inner surfaces kept, they bound hollows; --outer-only drops them");
   note(u.dropped_inner, "inner components dropped, only outer ones are wanted");

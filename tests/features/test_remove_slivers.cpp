@@ -70,6 +70,8 @@ uint32_t vertex_at(const FeatureMesh& mesh, const WorldPoint& p) {
                   mesh.vertices.begin());
 }
 
+const Context context;
+
 }  // namespace
 
 TEST_CASE("slivers: triangles without area along an edge go, and the edge is the crease that it was",
@@ -77,18 +79,18 @@ TEST_CASE("slivers: triangles without area along an edge go, and the edge is the
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({.5, 1.1, 1.2, 2.7, 3.9}));
   const size_t triangles = mesh.triangles.size(), vertices = mesh.vertices.size();
   REQUIRE(least_height_in(mesh) == 0);
-  CHECK(remove_slivers(mesh, {}));
+  CHECK(remove_slivers(mesh, {}, context));
   CHECK(mesh.triangles.size() == triangles);
   CHECK(mesh.vertices.size() == vertices);
   CHECK(is_closed(mesh));
   CHECK(least_height_in(mesh) > least_height_world(mesh));
   CHECK(counts_of(find_curves(mesh, {CreaseMode::automatic, 0, .2})) == Counts{12, 0, 0, 0, 8});
-  CHECK_FALSE(remove_slivers(mesh, {}));
+  CHECK_FALSE(remove_slivers(mesh, {}, context));
 }
 
 TEST_CASE("slivers: edges shorter than rounding tells are collapsed", "[features][unit]") {
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({1, 1 + 1e-6, 1 + 2e-6, 3, 4 - 1e-6}));
-  CHECK(remove_slivers(mesh, {}));
+  CHECK(remove_slivers(mesh, {}, context));
   CHECK(mesh.vertices.size() == 8 + 2);
   CHECK(mesh.triangles.size() == 2 * mesh.vertices.size() - 4);
   CHECK(mesh.source_face.size() == mesh.triangles.size());
@@ -100,15 +102,28 @@ TEST_CASE("slivers: edges that are to stay do", "[features][unit]") {
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({1, 1 + 1e-6, 3}));
   const WorldPoint left{0, 0, 1}, right{4, 0, 1};
   CHECK(has_edge(mesh, edge_key(vertex_at(mesh, left), vertex_at(mesh, right))));
-  remove_slivers(mesh, {edge_key(vertex_at(mesh, left), vertex_at(mesh, right))});
+  remove_slivers(mesh, {edge_key(vertex_at(mesh, left), vertex_at(mesh, right))}, context);
   CHECK(is_closed(mesh));
   CHECK(has_edge(mesh, edge_key(vertex_at(mesh, left), vertex_at(mesh, right))));
+}
+
+TEST_CASE("slivers: a round edge in steps that are far shorter than rounding tells keeps its shape",
+          "[features][unit]") {
+  FeatureMesh mesh = weld_for_features(cylinder(3000, 1, 1));
+  mesh.rounding_world = .04 / 16;  // twenty steps
+  CHECK(remove_slivers(mesh, {}, context));
+  CHECK(is_closed(mesh));
+  CHECK(mesh.vertices.size() < 1000);
+  double volume = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    volume += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6;
+  CHECK(volume == Approx(kTau / 2).epsilon(.002));
 }
 
 TEST_CASE("slivers: a mesh without any is left as it is", "[features][unit]") {
   FeatureMesh ball = weld_for_features(shapes::sphere({0, 0, 0}, 1, 24));
   const auto triangles = ball.triangles;
-  CHECK_FALSE(remove_slivers(ball, {}));
+  CHECK_FALSE(remove_slivers(ball, {}, context));
   CHECK(ball.triangles == triangles);
 }
 

@@ -1,4 +1,5 @@
 // Runs that keep creases: the edges of crisp parts are edges of the result, and all that held without them still holds.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -217,6 +218,31 @@ TEST_CASE("features: where vertices are too few for all creases the longest are 
   CHECK_FALSE(features.lost.empty());
   for (const LostCurve& curve : features.lost) CHECK_FALSE(curve.reason.empty());
   CHECK(length_on(result.mesh, {0, 0, 0}, {11, 0, 0}, 1e-3) > 10);
+}
+
+TEST_CASE("features: a part that touches itself in a plane keeps its creases, and becomes a ring", "[features]") {
+  // Both arms of a U bend inward until they touch, and one is higher than the other.
+  TriangleSoup soup =
+      known_curves::cells({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {2, 1, 0}, {0, 2, 0}, {2, 2, 0}}, 2);
+  for (WorldPoint& p : soup.vertices) {
+    const double bent = std::min(1., std::max(0., p.y - 1));
+    const bool is_left = p.x < 1.5;
+    p = {p.x + (is_left ? .5 : -.5) * bent, p.y + (is_left ? 0 : .3) * bent, p.z + (is_left ? 0 : .2) * bent};
+  }
+  TestContext context;
+  const RemeshResult result = remesh(soup, keeping_creases(1500), context);
+  const FeatureReport& features = result.report.features;
+  const MeshTopology topology = check_mesh(result.mesh);
+  CHECK(topology.is_closed_manifold());
+  CHECK(topology.genus == 1);
+  CHECK(std::any_of(result.report.warnings.begin(), result.report.warnings.end(), [](const std::string& text) {
+    return text.find("the part touches or crosses itself") != std::string::npos;
+  }));
+  CHECK(features.kept);
+  CHECK(features.on_sheet.empty());
+  CHECK(features.kept_length_world == Approx(features.length_world));
+  CHECK(length_on(result.mesh, {1.5, 2.3, .2}, {1.5, 3, .2}, 1e-3) > .6);  // where one arm ends on the other
+  CHECK(result.report.optimize.self_intersections == 0);
 }
 
 TEST_CASE("features: few vertices on a fine grid are no error", "[features]") {

@@ -52,6 +52,8 @@ void borrow_normals(const FeatureMesh& mesh, const MeshEdges& edges, std::vector
     for (const auto& [t, n] : found)
       for (const uint32_t e : edges.of_triangle[t])
         if (edges.is_inner(e) && lacks_normal(edges.across(e, t))) next.push_back(edges.across(e, t));
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
     of_any_edge = next.empty();
     if (!of_any_edge) continue;
     thin.erase(std::stable_partition(thin.begin(), thin.end(), lacks_normal), thin.end());

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel_ranges.h"
+#include "core/watched.h"
 #include "features/mesh/mesh_fans.h"
 #include "geometry/box.h"
 #include "geometry/half_edges.h"
@@ -14,11 +15,14 @@
 namespace isoshell {
 namespace {
 
-constexpr double kThinHeight = 1e-5;       // of the largest extent: what floats round is 100 times smaller
-constexpr double kThinRoundings = 16;      // a triangle as high turns by 5 degrees where its vertices are rounded
-constexpr double kMostOffPlane = 1. / 16;  // of the least height: what rounding may have moved from a plane
-constexpr double kLeastCosine = .5;        // between normals before and after a change
-constexpr size_t kMostChanges = 64;        // a thin triangle, far more than it takes; rounding may not make it endless
+constexpr double kThinHeight = 1e-5;           // of the largest extent: what floats round is 100 times smaller
+constexpr double kThinRoundings = 16;          // a triangle as high turns by 5 degrees where its vertices are rounded
+constexpr double kMostOffPlane = 1. / 16;      // of the least height: what rounding may have moved from a plane
+constexpr double kLeastCosine = .5;            // between normals before and after a change
+constexpr double kParallel = .999;             // cosine between normals in one plane
+constexpr uint32_t kMostAround = 1024;         // triangles around a vertex that is changed
+constexpr size_t kChangesBetweenLooks = 4096;  // whether the run goes on
+constexpr size_t kMostChanges = 64;  // a thin triangle, far more than it takes; rounding may not make it endless
 
 double height_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
   const double longest = std::sqrt(std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)}));
@@ -37,14 +41,15 @@ class Slivers {
       for (const uint32_t v : t) ++corners_at_[v];
   }
 
-  bool remove(std::vector<uint32_t> thin) {
+  bool remove(std::vector<uint32_t> thin, const Context& context) {
     waiting_ = with_planes_of(std::move(thin));
     std::reverse(waiting_.begin(), waiting_.end());
     size_t changes = 0;
     for (const size_t most = kMostChanges * waiting_.size(); !waiting_.empty() && changes < most;) {
       const uint32_t t = waiting_.back();
       waiting_.pop_back();
-      if (!is_removed(t)) changes += change(t);
+      if (is_removed(t) || !change(t)) continue;
+      if (++changes % kChangesBetweenLooks == 0) check_cancel(context, "features");
     }
     return changes > 0;
   }
@@ -90,17 +95,29 @@ class Slivers {
     if (is_thin(t)) waiting_.push_back(t);
   }
 
-  /// And all triangles that are in a plane with them, as far as these hang together.
+  /// And all triangles that are in a plane with them, as far as these hang together: that of the first of them that is
+  /// not thin.
   std::vector<uint32_t> with_planes_of(std::vector<uint32_t> triangles) const {
     std::vector<uint8_t> is_in(mesh_.triangles.size(), 0);
     for (const uint32_t t : triangles) is_in[t] = 1;
-    for (size_t i = 0; i < triangles.size(); ++i)
+    std::vector<WorldPoint> plane(triangles.size(), {0, 0, 0});
+    for (size_t i = 0; i < triangles.size(); ++i) {
+      if (length_sq(plane[i]) == 0 && !is_thin(triangles[i])) plane[i] = area_of(triangles[i]);
       for (const uint32_t h : {3 * triangles[i], 3 * triangles[i] + 1, 3 * triangles[i] + 2}) {
         if (twin_[h] == kNone || is_in[twin_[h] / 3] || !is_flat(h)) continue;
+        const WorldPoint n = area_of(twin_[h] / 3);
+        if (dot(n, plane[i]) < kParallel * length(n) * length(plane[i]) && !is_thin(twin_[h] / 3)) continue;
         is_in[twin_[h] / 3] = 1;
         triangles.push_back(twin_[h] / 3);
+        plane.push_back(plane[i]);
       }
+    }
     return triangles;
+  }
+
+  WorldPoint area_of(uint32_t t) const {
+    const auto& c = mesh_.triangles[t];
+    return doubled_area(at(c[0]), at(c[1]), at(c[2]));
   }
 
   /// Whether the triangles of an edge are in a plane, and face the same way.
@@ -114,7 +131,8 @@ class Slivers {
     std::array<uint32_t, 3> edge{3 * t, 3 * t + 1, 3 * t + 2};
     std::stable_sort(edge.begin(), edge.end(), [&](uint32_t g, uint32_t h) { return length_at(g) > length_at(h); });
     if (const uint32_t h = edge[2]; twin_[h] != kNone && length_at(h) < least_) {
-      for (const uint32_t along : {h, twin_[h]}) {
+      const bool starts_at_fewer = corners_at_[from(h)] <= corners_at_[to(h)];
+      for (const uint32_t along : {starts_at_fewer ? h : twin_[h], starts_at_fewer ? twin_[h] : h}) {
         if (!may_collapse(along)) continue;
         collapse(along);
         return true;
@@ -132,13 +150,13 @@ class Slivers {
     const uint32_t g = twin_[h];
     const WorldPoint &a = at(from(h)), &b = at(to(h)), &c = at(opposite(h)), &d = at(opposite(g));
     const WorldPoint at_c = doubled_area(a, b, c), at_d = doubled_area(b, a, d);
-    if (may_be_beside(before(h), opposite(g))) return false;
-    if (is_longest && is_thin(h / 3) && is_thin(g / 3) && is_longest_of(g)) return length(d - c) < length(b - a);
+    if (is_longest && is_thin(h / 3) && is_thin(g / 3) && is_longest_of(g))
+      return length(d - c) < length(b - a) && !may_be_beside(before(h), opposite(g));
     const bool flat = is_flat(h);
     if (!(flat ? is_obtuse(h, at_c, at_d) : is_longest && is_thin(h / 3) && is_cap_beside(h))) return false;
     const WorldPoint side = flat ? at_c + at_d : at_d, at_a = doubled_area(a, d, c), at_b = doubled_area(b, c, d);
     const auto faces_so = [&](const WorldPoint& n) { return dot(n, side) > kLeastCosine * length(n) * length(side); };
-    return faces_so(at_a) && faces_so(at_b);
+    return faces_so(at_a) && faces_so(at_b) && !may_be_beside(before(h), opposite(g));
   }
 
   bool is_longest_of(uint32_t h) const { return length_at(h) >= std::max(length_at(next(h)), length_at(before(h))); }
@@ -157,8 +175,10 @@ class Slivers {
     return !is_thin(twin_[h] / 3) && std::min(height_of(a, d, c), height_of(b, c, d)) > height(h / 3);
   }
 
-  /// Whether an edge joins the vertex that a half-edge begins at to another one, or may: there are other fans at it.
+  /// Whether an edge joins the vertex that a half-edge begins at to another one, or may: there are other fans at it, or
+  /// too many triangles.
   bool may_be_beside(uint32_t begin, uint32_t other) const {
+    if (corners_at_[from(begin)] > kMostAround) return true;
     uint32_t count = 0;
     bool is_found = false;
     visit_fan(begin, [&](uint32_t h) {
@@ -208,7 +228,7 @@ class Slivers {
   /// c and d is beside both, and no triangle of it turns far.
   bool may_collapse(uint32_t h) const {
     const uint32_t a = from(h), b = to(h), c = opposite(h), d = opposite(twin_[h]);
-    if (stays_[a] || c == d || corners_at_[c] < 4 || corners_at_[d] < 4) return false;
+    if (stays_[a] || c == d || corners_at_[a] > kMostAround || corners_at_[c] < 4 || corners_at_[d] < 4) return false;
     uint32_t count = 0;
     bool may = true;
     const bool is_closed = visit_fan(h, [&](uint32_t out) {
@@ -231,6 +251,7 @@ class Slivers {
     --corners_at_[opposite(h)], --corners_at_[opposite(g)];
     corners_at_[b] += corners_at_[a] - 4;
     corners_at_[a] = 0;
+    stays_[b] = 1;  // what was taken into it would go farther with it
     for (const uint32_t edge : {h, g}) {
       connect(twin_[next(edge)], twin_[before(edge)]);
       for (const uint32_t e : {edge, next(edge), before(edge)}) twin_[e] = kNone;
@@ -256,7 +277,7 @@ double least_height_world(const FeatureMesh& mesh) {
   return std::max(kThinHeight * extent, kThinRoundings * mesh.rounding_world);
 }
 
-bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept) {
+bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, const Context& context) {
   const double least = least_height_world(mesh);
   std::vector<uint8_t> is_thin(mesh.triangles.size());
   for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
@@ -268,7 +289,7 @@ bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept) {
     if (is_thin[t]) thin.push_back(t);
   if (thin.empty()) return false;
   Slivers slivers(mesh, least, kept);
-  const bool has_changed = slivers.remove(std::move(thin));
+  const bool has_changed = slivers.remove(std::move(thin), context);
   slivers.drop_removed();
   return has_changed;
 }

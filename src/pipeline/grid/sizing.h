@@ -7,6 +7,9 @@
 
 namespace isoshell {
 
+inline constexpr double kSheetGapVox =
+    1. / 64;  ///< between sheets of a union: rounding to the lattice leaves them apart
+
 constexpr double kFewestCellVox = 3.5;  ///< width of a cell: narrower ones are no disks of sheet triangles
 
 /// Whether lengths may vary.

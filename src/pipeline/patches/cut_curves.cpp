@@ -141,7 +141,7 @@ SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSourc
   const FeatureMesh& mesh = plan.mesh;
   CurveOptions within_budget = plan.curves;
   within_budget.edge_length_world = plan.how.edge_length_world;
-  within_budget.most_vertices = kMostOnCurves * double(plan.seeds);
+  within_budget.most_vertices = std::max(1., kMostOnCurves * double(plan.seeds));
   const CurveNetwork network = find_curves(mesh, within_budget, plan.creases);
   source.found = describe(mesh, network);
   for (LostCurve& curve : left_out_of(mesh, all, edges_of(network))) source.left_out.push_back(std::move(curve));

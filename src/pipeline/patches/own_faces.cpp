@@ -7,13 +7,21 @@
 #include "features/mesh/weld_for_features.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/boolean_union.h"
+#include "isoshell/readable.h"
 #include "measure/crossings.h"
+#include "pipeline/grid/sizing.h"
 
 namespace isoshell {
 namespace {
 
-/// Of points of the lattice.
+constexpr uint32_t kMostAround = 1024;  ///< triangles at a vertex: all pairs of them are looked at
+
+/// Of points of the lattice. Where very many triangles meet at a vertex it is not looked at.
 bool meets_itself(const FeatureMesh& mesh, const LatticeFrame& frame, const Context& context) {
+  std::vector<uint32_t> around(mesh.vertices.size(), 0);
+  for (const auto& t : mesh.triangles)
+    for (const uint32_t v : t)
+      if (++around[v] > kMostAround) return false;
   Buffer<PointQ8> points(int64_t(mesh.vertices.size()));
   Buffer<TriangleIndices> triangles(int64_t(mesh.triangles.size()));
   for_each_index(size_t(0), mesh.vertices.size(), [&](size_t v) { points[v] = frame.snap(mesh.vertices[v]); });
@@ -38,12 +46,15 @@ void unite_own_faces(SearchedSurface& searched, const PreparedSurface& p, Remesh
   if (!united.changed_anything()) return;
   const InputTopology after = measure_topology(whole, context).topology;
   if (!after.closed || !after.oriented) return;
-  report.input.united.cut_faces += united.cut_faces;
+  report.warnings.push_back(
+      counted(united.cut_faces, "face was", "faces were") +
+      " cut where the part touches or crosses itself, to within rounding; creases are those of what "
+      "it encloses");
   const double rounding_world = searched.mesh.rounding_world;
   run_with_threads(context, [&] {
     searched.mesh = weld_for_features(whole);
     searched.mesh.rounding_world = rounding_world;
-    remove_slivers(searched.mesh, {});
+    remove_slivers(searched.mesh, {}, context);
   });
   searched.creases.reset();
 }

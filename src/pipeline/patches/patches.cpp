@@ -140,7 +140,7 @@ SearchedSurface searched_surface(const PreparedSurface& p, const std::vector<std
     std::vector<uint64_t> keys;
     for (const auto& [u, v] : vertices_of(kept, alone.mesh, p.surface.frame)) keys.push_back(edge_key(u, v));
     std::sort(keys.begin(), keys.end());
-    alone.had_slivers = remove_slivers(alone.mesh, keys);
+    alone.had_slivers = remove_slivers(alone.mesh, keys, context);
   });
   return alone;
 }
@@ -158,6 +158,25 @@ struct MeshOfPatches {
   JoinedPatches joined;
   std::string why_not;
 };
+
+/// Simplifies patches whose relaxed mesh has a tenth more vertices than are wanted, if that is possible.
+void meet_count(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made, WrongPatches none,
+                const PatchOptions& options, JoinedPatches& joined, RemeshReport& report, Context& context) {
+  const int64_t wanted = join_options(options).vertices, vertices = joined.mesh.position.size();
+  if (vertices <= wanted || CountReport{wanted, vertices, {}}.is_near()) return;
+  none.what = "curves take too many vertices for their edges to be as long as others";
+  const int64_t crossings = report.optimize.self_intersections;
+  std::optional<JoinedPatches> simplified;
+  failure_reason([&] {
+    simplified = simplify_instead(p, cut, made, std::move(none), options, report, context);
+    return std::string();
+  });
+  if (simplified)
+    joined = std::move(*simplified);
+  else
+    report.optimize.self_intersections = crossings;
+}
+
 MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
                               const PatchOptions& options, RemeshReport& report, Context& context) {
   MeshOfPatches out;
@@ -165,17 +184,13 @@ MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const Cu
     WrongPatches wrong = mesh_patches(p, *cut, made, options, report, context);
     if (!wrong.what.empty() && options.previous) return wrong.what;
     if (wrong.what.empty()) {
-      const JoinOptions join = join_options(options);
-      out.joined = timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join, context); });
-      const int64_t vertices = out.joined.mesh.position.size();
-      if (vertices > join.vertices && !CountReport{join.vertices, vertices, {}}.is_near())
-        wrong.what = "curves take too many vertices for their edges to be as long as others";
-    }
-    if (!wrong.what.empty()) {
-      if (auto simplified = simplify_instead(p, *cut, made, wrong, options, report, context))
-        out.joined = std::move(*simplified);
-      else if (out.joined.mesh.position.size() == 0)
-        return wrong.what;
+      out.joined =
+          timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(options), context); });
+      if (!options.previous) meet_count(p, *cut, made, std::move(wrong), options, out.joined, report, context);
+    } else if (auto simplified = simplify_instead(p, *cut, made, wrong, options, report, context)) {
+      out.joined = std::move(*simplified);
+    } else {
+      return wrong.what;
     }
     out.mesh = to_world(out.joined.mesh, p.surface.frame);
     out.mesh.features = std::move(out.joined.features);
@@ -236,7 +251,7 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, RemeshRepor
     kept.insert(kept.end(), source.interfaces.begin(), source.interfaces.end());
     SearchedSurface searched = searched_surface(p, kept, context);
     CurveOptions curves = curve_options(options, p.previous.get(), edge_world);
-    if (!searched.creases)
+    if (!searched.creases && !lines)
       searched.creases = run_with_threads(context, [&] { return find_creases(searched.mesh, curves); });
     const bool is_closed = p.surface.topology.closed && p.surface.topology.oriented;
     if (is_closed && seams.edges.empty() && !lines && !searched.creases->curve_edges.empty())
