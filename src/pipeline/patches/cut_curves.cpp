@@ -145,6 +145,10 @@ SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSourc
   const CurveNetwork network = find_curves(mesh, within_budget, plan.creases);
   source.found = describe(mesh, network);
   for (LostCurve& curve : left_out_of(mesh, all, edges_of(network))) source.left_out.push_back(std::move(curve));
+  const FeatureReport all_found = report.features;
+  report_found(mesh, network, all_found.border_loops > 0, report.features);
+  report.features.border_loops = all_found.border_loops;
+  report.features.length_world = all_found.length_world;
   return make_cut(plan, network, std::move(source), report.features, context);
 }
 
