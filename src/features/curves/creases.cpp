@@ -145,8 +145,8 @@ class Judge {
   }
 
   /// Looks at every twelfth chain, then at the next ones of components that may have creases: on a scan, it needs no
-  /// more than show that a quarter of their length is bad. Beside creases before all are bad that these do not hold,
-  /// and the surface is one component.
+  /// more than show that a quarter of their length is bad. Beside creases before all are bad that these do not hold, or
+  /// that say nothing, and the surface is one component.
   JudgedChains judge(const CreasesBefore* before) const {
     const WalkGround ground{mesh_, edges_, normals_, is_end_};
     JudgedChains all{std::vector<Judged>(chains_.size()), {}};
@@ -165,7 +165,7 @@ class Judge {
           look_beside_chain(ground, chains_[c], judged[c]);
       });
       for (size_t c = first; c < chains_.size(); c += kParts)
-        if (chains_[c].kind == CurveKind::crease && judged[c].is_bad())
+        if (chains_[c].kind == CurveKind::crease && (before ? !judged[c].is_surely_good() : judged[c].is_bad()))
           of_component[judged[c].component].bad += judged[c].length_world;
     }
     for (size_t c = 0; c < chains_.size(); ++c)
