@@ -97,7 +97,7 @@ EditableMesh joined_mesh(const CutLookup& lookup, const SeedSet& seeds, const Du
 PatchMesh::PatchMesh(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options)
     : PatchMesh(std::make_shared<CutLookup>(cut), made, options) {}
 
-PatchMesh::PatchMesh(std::shared_ptr<const CutLookup> lookup, const SeededMesh& made, const JoinOptions& options)
+PatchMesh::PatchMesh(const std::shared_ptr<const CutLookup>& lookup, const SeededMesh& made, const JoinOptions& options)
     : PatchMesh(lookup, joined_mesh(*lookup, *OnHost<SeedSet>(made.seeds), *OnHost<DualMesh>(made.mesh)), options) {}
 
 PatchMesh::PatchMesh(std::shared_ptr<const CutLookup> lookup, EditableMesh mesh, const JoinOptions& options)

@@ -83,7 +83,7 @@ class PatchMesh : public EditableMesh {
   std::optional<MeshRegion> improved(const MeshRegion& start) const;
   std::optional<MeshRegion> recounted(const MeshRegion& start) const;
 
-  PatchMesh(std::shared_ptr<const CutLookup> lookup, const SeededMesh& made, const JoinOptions& options);
+  PatchMesh(const std::shared_ptr<const CutLookup>& lookup, const SeededMesh& made, const JoinOptions& options);
 
   std::shared_ptr<const CutLookup> lookup_;
   std::vector<char> is_hopeless_;      ///< per triangle: nothing changed since it was tried

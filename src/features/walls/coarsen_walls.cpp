@@ -15,7 +15,8 @@ PatchMesh coarsen_walls(const CutSurface& cut, const WallTriangles& walls, const
     WallMesh mesh(cut, walls);
     coarsen(mesh, options.vertices, context);
     even_out(mesh, options.vertices, context);
-    return PatchMesh(mesh.shared_lookup(), std::move(mesh), options);
+    auto lookup = mesh.shared_lookup();
+    return PatchMesh(std::move(lookup), std::move(mesh), options);
   });
 }
 
