@@ -16,14 +16,14 @@ namespace isoshell {
 namespace {
 
 constexpr double kSeedDegrees = 40, kGrowthDegrees = 20;
-constexpr double kStraightOn = .5;        // cosine between an edge and the next one, to grow: 60 degrees
-constexpr int64_t kMostToGrow = 64;       // edges around a vertex: where more meet, none goes on from another
-constexpr double kMostBeside = .51;       // of a good chain; one side may turn, however much, when the other is flat
-constexpr double kMostBesideInCad = .75;  // of a crease where nearly all other chains are good: both sides are round
-constexpr double kLeastGoodShare = .75;   // of a component that has creases: CAD has .76 to 1, scans up to .56
-constexpr double kNearlyAll = .98;        // crisp parts have 1, a pool with a rim .72 to .95 when a drop falls into it
-constexpr size_t kParts = 12;             // in which chains are judged
-constexpr double kWalkInFaceSizes = 4;    // at least: roots of the area of the face beside the edge
+constexpr double kStraightOn = .5;         // cosine between an edge and the next one, to grow: 60 degrees
+constexpr int64_t kMostToGrow = 64;        // edges around a vertex: where more meet, none goes on from another
+constexpr double kMostBeside = .51;        // of a good chain; one side may turn, however much, when the other is flat
+constexpr double kMostBesideInPart = .75;  // of a crease of a component that has creases: both sides may be round
+constexpr double kLeastGoodShare = .75;  // of a component that has creases: crisp parts have .76 to 1, scans up to .62
+constexpr double kNearlyAll = .98;       // crisp parts have 1, a pool with a rim .72 to .95 when a drop falls into it
+constexpr size_t kParts = 12;            // in which chains are judged
+constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
 Buffer<double> turns_at(const MeshEdges& edges, View<const WorldPoint> normals) {
@@ -117,7 +117,7 @@ struct JudgedChains {
   std::map<uint32_t, Lengths> of_component;
 
   bool is_crease(size_t c) const {
-    return chain[c].beside < kMostBesideInCad && of_component.at(chain[c].component).are_of_creases();
+    return chain[c].beside < kMostBesideInPart && of_component.at(chain[c].component).are_of_creases();
   }
   /// Whether nearly all that looks like a crease is one, over all components.
   bool are_nearly_all_creases() const {
@@ -182,7 +182,7 @@ class Judge {
     };
     for (size_t i = 0; i < chain.edge.size(); ++i) at += size(i) * std::sqrt(turns_[chain.edge[i]]);
     // Sums only grow: what is found to be no crease on the way needs no more walks.
-    for (size_t i = 0; i < chain.edge.size() && beside / at < kMostBesideInCad; ++i) {
+    for (size_t i = 0; i < chain.edge.size() && beside / at < kMostBesideInPart; ++i) {
       const uint32_t e = chain.edge[i];
       const double own = std::sqrt(turns_[e]);
       for (const uint32_t f : edges_.edges[e].face) {

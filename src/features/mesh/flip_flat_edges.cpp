@@ -8,6 +8,7 @@
 
 #include "core/parallel_ranges.h"
 #include "features/mesh/edge_subdivision.h"
+#include "features/mesh/twin_triangles.h"
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/voxel_set.h"
@@ -19,14 +20,12 @@ constexpr double kMostOffPlaneQ8 = 0.5;
 constexpr size_t kMostFlipsPerEdge = 256;  ///< strips take dozens; rounding may not make it endless
 constexpr double kRoundedAway = 1e-9;      ///< sums of two angles of 180 degrees, as in grids, are not told from it
 
-/// Half-edge 3 t + i runs from corner i of triangle t to the next one. Of the triangles beside an edge, a to b, c is
-/// the corner of the one that passes it so, d that of the other.
-class FlatEdges {
+class FlatEdges : private TwinTriangles {
  public:
   /// `twins` are those between paths: edges without stay, and of no flip more than a part is seen or changed. No edge
   /// is made that `avoided` has, which is ascending.
   FlatEdges(FineMesh& mesh, MeshTwins& twins, const std::vector<uint64_t>& avoided)
-      : mesh_(mesh), twin_(twins.of), part_(twins.part), avoided_(avoided) {}
+      : TwinTriangles(mesh.triangles, twins.of), mesh_(mesh), part_(twins.part), avoided_(avoided) {}
 
   /// Returns the edges that flips made, whether they still are or not.
   std::vector<uint64_t> flip_all() {
@@ -83,10 +82,6 @@ class FlatEdges {
     return made;
   }
 
-  static uint32_t next(uint32_t h) { return next_in_triangle(h); }
-  uint32_t from(uint32_t h) const { return mesh_.triangles[h / 3][h % 3]; }
-  uint32_t to(uint32_t h) const { return from(next(h)); }
-  uint32_t opposite(uint32_t h) const { return from(next(next(h))); }
   const WorldPoint& at(uint32_t v) const { return mesh_.position[v]; }
   uint32_t canonical(uint32_t h) const { return is_before(at(from(h)), at(to(h))) ? h : twin_[h]; }
 
@@ -114,44 +109,21 @@ class FlatEdges {
     if (dot(cross(d - a, c - a), both) <= 0 || dot(cross(c - b, d - b), both) <= 0) return false;
     const double longest_sq =
         std::max({length_sq(b - a), length_sq(c - a), length_sq(c - b), length_sq(d - a), length_sq(d - b)});
-    return length(d - c) <= std::sqrt(longest_sq) && !is_beside(next(next(h)), opposite(twin_[h])) &&
+    return length(d - c) <= std::sqrt(longest_sq) && !is_beside(before(h), opposite(twin_[h])) &&
            !std::binary_search(avoided_.begin(), avoided_.end(), edge_key(opposite(h), opposite(twin_[h])));
   }
 
   /// Whether an edge joins the vertex that a half-edge begins at to another one, in the fan of its triangle.
   bool is_beside(uint32_t begin, uint32_t other) const {
-    for (uint32_t h = begin; h != kNone;) {
-      const uint32_t before = next(next(h));
-      if (to(h) == other || from(before) == other) return true;
-      h = twin_[before];
-      if (h == begin) return false;
-    }
-    for (uint32_t h = twin_[begin]; h != kNone; h = twin_[next(h)])
-      if (to(next(h)) == other || opposite(next(h)) == other) return true;
-    return false;
+    bool is_found = false;
+    visit_fan(begin, [&](uint32_t h) {
+      is_found = to(h) == other || opposite(h) == other;
+      return !is_found;
+    });
+    return is_found;
   }
 
-  /// The triangles a, b, c and b, a, d become a, d, c and b, c, d.
-  void flip(uint32_t h) {
-    const uint32_t g = twin_[h], t = h - h % 3, u = g - g % 3;
-    const uint32_t a = from(h), b = to(h), c = opposite(h), d = opposite(g);
-    const uint32_t at_ad = twin_[next(g)], at_ca = twin_[next(next(h))], at_bc = twin_[next(h)],
-                   at_db = twin_[next(next(g))];
-    mesh_.triangles[t / 3] = {a, d, c};
-    mesh_.triangles[u / 3] = {b, c, d};
-    connect(t, at_ad);
-    connect(t + 1, u + 1);
-    connect(t + 2, at_ca);
-    connect(u, at_bc);
-    connect(u + 2, at_db);
-  }
-  void connect(uint32_t g, uint32_t h) {
-    twin_[g] = h;
-    if (h != kNone) twin_[h] = g;
-  }
-
-  FineMesh& mesh_;
-  std::vector<uint32_t>& twin_;
+  const FineMesh& mesh_;
   const std::vector<uint32_t>& part_;
   const std::vector<uint64_t>& avoided_;
 };

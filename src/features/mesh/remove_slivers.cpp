@@ -6,11 +6,9 @@
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
-#include "features/mesh/mesh_fans.h"
+#include "features/mesh/twin_triangles.h"
 #include "geometry/box.h"
-#include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
-#include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 namespace {
@@ -19,6 +17,7 @@ constexpr double kThinHeight = 1e-5;           // of the largest extent: what fl
 constexpr double kThinRoundings = 16;          // a triangle as high turns by 5 degrees where its vertices are rounded
 constexpr double kMostOffPlane = 1. / 16;      // of the least height: what rounding may have moved from a plane
 constexpr double kLeastCosine = .5;            // between normals before and after a change
+constexpr double kRoundedAway = 1e-9;          // sums of two angles of 180 degrees, as in grids, are not told from it
 constexpr double kParallel = .999;             // cosine between normals in one plane
 constexpr uint32_t kMostAround = 1024;         // triangles around a vertex that is changed
 constexpr size_t kChangesBetweenLooks = 4096;  // whether the run goes on
@@ -29,13 +28,15 @@ double height_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) 
   return longest > 0 ? length(doubled_area(a, b, c)) / longest : 0;
 }
 
-/// Half-edge 3 t + i runs from corner i of triangle t to the next one. Of the triangles beside an edge, a to b, c is
-/// the corner of the one that passes it so, d that of the other.
-class Slivers {
+class Slivers : private TwinTriangles {
  public:
-  Slivers(FeatureMesh& mesh, double least_height, const std::vector<uint64_t>& kept)
-      : mesh_(mesh), least_(least_height), stays_(mesh.vertices.size(), 0), corners_at_(mesh.vertices.size(), 0) {
-    twin_ = find_twins(mesh.triangles, find_edge_sides(mesh.triangles, mesh.vertices.size()), kept).of;
+  /// `twin`: between edges that are kept.
+  Slivers(FeatureMesh& mesh, std::vector<uint32_t>& twin, double least_height, const std::vector<uint64_t>& kept)
+      : TwinTriangles(mesh.triangles, twin),
+        mesh_(mesh),
+        least_(least_height),
+        stays_(mesh.vertices.size(), 0),
+        corners_at_(mesh.vertices.size(), 0) {
     for (const uint64_t edge : kept) stays_[edge >> 32] = stays_[uint32_t(edge)] = 1;
     for (const auto& t : mesh.triangles)
       for (const uint32_t v : t) ++corners_at_[v];
@@ -78,11 +79,6 @@ class Slivers {
   }
 
  private:
-  static uint32_t next(uint32_t h) { return next_in_triangle(h); }
-  static uint32_t before(uint32_t h) { return next(next(h)); }
-  uint32_t from(uint32_t h) const { return mesh_.triangles[h / 3][h % 3]; }
-  uint32_t to(uint32_t h) const { return from(next(h)); }
-  uint32_t opposite(uint32_t h) const { return from(before(h)); }
   const WorldPoint& at(uint32_t v) const { return mesh_.vertices[v]; }
   double length_at(uint32_t h) const { return std::sqrt(distance_sq(at(from(h)), at(to(h)))); }
   bool is_removed(uint32_t t) const { return mesh_.triangles[t][0] == kNone; }
@@ -140,7 +136,7 @@ class Slivers {
     }
     for (const uint32_t h : edge) {
       if (twin_[h] == kNone || !should_flip(h, h == edge[0])) continue;
-      flip(h);
+      flip_edge(h);
       return true;
     }
     return false;
@@ -183,45 +179,20 @@ class Slivers {
     bool is_found = false;
     visit_fan(begin, [&](uint32_t h) {
       ++count;
-      is_found = is_found || to(h) == other || opposite(h) == other;
+      is_found = to(h) == other || opposite(h) == other;
+      return !is_found;
     });
     return is_found || count != corners_at_[from(begin)];
   }
 
-  /// Calls visit(half-edge) for those that leave the vertex that one begins at, of the triangles of its fan. Result:
-  /// whether it is closed.
-  template <class Visit>
-  bool visit_fan(uint32_t begin, Visit visit) const {
-    for (uint32_t h = begin; h != kNone;) {
-      visit(h);
-      h = twin_[before(h)];
-      if (h == begin) return true;
-    }
-    for (uint32_t g = twin_[begin]; g != kNone; g = twin_[next(g)]) visit(next(g));
-    return false;
-  }
-
-  /// The triangles a, b, c and b, a, d become a, d, c and b, c, d.
-  void flip(uint32_t h) {
-    const uint32_t g = twin_[h], t = h - h % 3, u = g - g % 3;
-    const uint32_t a = from(h), b = to(h), c = opposite(h), d = opposite(g);
-    const uint32_t at_ad = twin_[next(g)], at_ca = twin_[before(h)], at_bc = twin_[next(h)], at_db = twin_[before(g)];
-    mesh_.triangles[t / 3] = {a, d, c};
-    mesh_.triangles[u / 3] = {b, c, d};
-    connect(t, at_ad);
-    connect(t + 1, u + 1);
-    connect(t + 2, at_ca);
-    connect(u, at_bc);
-    connect(u + 2, at_db);
-    --corners_at_[a], --corners_at_[b], ++corners_at_[c], ++corners_at_[d];
-    for (const uint32_t beside : {at_ad, at_ca, at_bc, at_db})
-      if (beside != kNone) wait_if_thin(beside / 3);
-    waiting_.push_back(u / 3);
-    waiting_.push_back(t / 3);
-  }
-  void connect(uint32_t g, uint32_t h) {
-    if (g != kNone) twin_[g] = h;
-    if (h != kNone) twin_[h] = g;
+  void flip_edge(uint32_t h) {
+    const uint32_t t = h / 3, u = twin_[h] / 3;
+    --corners_at_[from(h)], --corners_at_[to(h)], ++corners_at_[opposite(h)], ++corners_at_[opposite(twin_[h])];
+    flip(h);
+    // Edges t + 1 and u + 1 are the one that was made.
+    for (const uint32_t outer : {3 * t, 3 * t + 2, 3 * u, 3 * u + 2})
+      if (twin_[outer] != kNone) wait_if_thin(twin_[outer] / 3);
+    waiting_.insert(waiting_.end(), {u, t});
   }
 
   /// Whether the vertex that a half-edge begins at may go to its end: around it is one closed fan, no other vertex than
@@ -234,10 +205,11 @@ class Slivers {
     const bool is_closed = visit_fan(h, [&](uint32_t out) {
       ++count;
       const uint32_t x = to(out), y = opposite(out);
-      if (x == b || y == b) return;
+      if (x == b || y == b) return true;
       const WorldPoint was = doubled_area(at(a), at(x), at(y)), now = doubled_area(at(b), at(x), at(y));
-      may = may && (is_thin(out / 3) || dot(was, now) > kLeastCosine * length(was) * length(now)) &&
+      may = (is_thin(out / 3) || dot(was, now) > kLeastCosine * length(was) * length(now)) &&
             (x == c || x == d || !may_be_beside(next(h), x));
+      return may;
     });
     return may && is_closed && count == corners_at_[a];
   }
@@ -246,7 +218,10 @@ class Slivers {
   void collapse(uint32_t h) {
     const uint32_t g = twin_[h], a = from(h), b = to(h);
     std::vector<uint32_t> around;
-    visit_fan(h, [&](uint32_t out) { around.push_back(out); });
+    visit_fan(h, [&](uint32_t out) {
+      around.push_back(out);
+      return true;
+    });
     for (const uint32_t out : around) mesh_.triangles[out / 3][out % 3] = b;
     --corners_at_[opposite(h)], --corners_at_[opposite(g)];
     corners_at_[b] += corners_at_[a] - 4;
@@ -260,11 +235,8 @@ class Slivers {
     for (const uint32_t out : around) wait_if_thin(out / 3);
   }
 
-  static constexpr double kRoundedAway = 1e-9;  // sums of two angles of 180 degrees, as in grids, are not told from it
-
   FeatureMesh& mesh_;
   double least_;
-  std::vector<uint32_t> twin_;
   std::vector<uint8_t> stays_;        ///< per vertex
   std::vector<uint32_t> corners_at_;  ///< per vertex
   std::vector<uint32_t> waiting_;     ///< triangles
@@ -288,7 +260,8 @@ bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, const 
   for (uint32_t t = 0; t < is_thin.size(); ++t)
     if (is_thin[t]) thin.push_back(t);
   if (thin.empty()) return false;
-  Slivers slivers(mesh, least, kept);
+  MeshTwins twins = find_twins(mesh.triangles, find_edge_sides(mesh.triangles, mesh.vertices.size()), kept);
+  Slivers slivers(mesh, twins.of, least, kept);
   const bool has_changed = slivers.remove(std::move(thin), context);
   slivers.drop_removed();
   return has_changed;

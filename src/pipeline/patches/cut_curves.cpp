@@ -178,11 +178,12 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
       return std::string();
     });
   };
-  if (how.vertices == 0 || least_vertices_on(network, source.found, how.edge_length_world) <= double(seeds))
-    cut_along_all();
+  const bool may_fit =
+      how.vertices == 0 || least_vertices_on(network, source.found, how.edge_length_world) <= double(seeds);
+  if (may_fit) cut_along_all();
   if (!cut && !how.before.empty()) {  // curves may keep more seeds than there is room for
     how.before.clear();
-    cut_along_all();
+    if (may_fit) cut_along_all();
   }
   if (cut) return cut;
   return cut_along_fewer(plan, network, std::move(source), report, context);
