@@ -69,7 +69,7 @@ std::vector<uint64_t> turning_edges(const FineMesh& mesh) {
 /// triangles of flat faces the parts would have vertices nearer to one another than the lattice can tell.
 FineMesh without_slivers(FineMesh mesh, Context& context) {
   const std::vector<uint64_t> turning = turning_edges(mesh);
-  return flip_flat_edges(refine_mesh(std::move(mesh), context, nullptr, &turning));
+  return flip_flat_edges(refine_mesh(std::move(mesh), context, &turning));
 }
 
 /// Cut coarsely first, to find the lengths, then as they ask, with a vertex for every seed of a path.
@@ -97,7 +97,7 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   std::vector<WorldPoint> before;
   for (const WorldPoint& p : options.before) before.push_back(on_lattice(frame, p));
   place_path_seeds(fine, facing, before);
-  fine = refine_mesh(std::move(fine), context, &graph.neighbours);
+  fine = refine_mesh(std::move(fine), context);
   begin_loops_at_seeds(fine);
   return flip_flat_edges(std::move(fine), &twins);
 }

@@ -47,26 +47,6 @@ Buckets<uint32_t> larger_ends(const FineMesh& mesh) {
       sort_into_buckets<uint32_t>(int64_t(mesh.position.size()), int64_t(mesh.triangles.size()), list));
 }
 
-/// Those neighbours that are larger than the vertex.
-Buckets<uint32_t> larger_ones(const Buckets<uint32_t>& neighbours) {
-  const auto larger = [&](int64_t v) {
-    const View<const uint32_t> all = neighbours.in(v);
-    const auto begin = std::upper_bound(all.begin(), all.end(), uint32_t(v));
-    return all.part(begin - all.begin(), all.end() - begin);
-  };
-  Buckets<uint32_t> out;
-  out.first = Buffer<int64_t>(neighbours.first.size());
-  out.first[neighbours.count()] = 0;
-  for_each_index(int64_t(0), neighbours.count(), [&](int64_t v) { out.first[v] = larger(v).size; });
-  offsets_from_counts(out.first.view());
-  out.items = Buffer<uint32_t>(out.first[out.count()]);
-  for_each_index(int64_t(0), out.count(), [&](int64_t v) {
-    const View<const uint32_t> ends = larger(v);
-    std::copy(ends.begin(), ends.end(), out.items.begin() + out.first[v]);
-  });
-  return out;
-}
-
 }  // namespace
 
 int64_t parts_of(const WorldPoint& a, const WorldPoint& b, double longest) {
@@ -83,10 +63,8 @@ double longest_fine_edge(const FineMesh& mesh, double edge_length) {
   return std::min(edge_length / mesh.parts_of_edge, kLongestQ8);
 }
 
-EdgeSubdivision::EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours,
-                                 const std::vector<uint64_t>* only)
-    : larger_end_(neighbours ? larger_ones(*neighbours) : larger_ends(mesh)),
-      parts_(size_t(larger_end_.items.size()), Parts{0, 0, kNone}) {
+EdgeSubdivision::EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const std::vector<uint64_t>* only)
+    : larger_end_(larger_ends(mesh)), parts_(size_t(larger_end_.items.size()), Parts{0, 0, kNone}) {
   const std::vector<InnerPoints> on_paths = cut_paths(mesh);
   count_points(mesh, on_paths, memory_bytes, only);
   place_points(mesh, on_paths);

@@ -21,10 +21,9 @@ inline double value_between(double a, double b, int64_t i, int64_t parts) {
 class EdgeSubdivision {
  public:
   /// Appends their vertices to the mesh, and cuts its paths. `memory_bytes`: what is made of them may take so much; 0:
-  /// any. `neighbours`: those of the vertices, ascending; null: not known. `only`: keys of the edges off paths that are
-  /// cut, ascending; null: all. Throws: usage when they are far more than the area needs, or more than that.
-  EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const Buckets<uint32_t>* neighbours,
-                  const std::vector<uint64_t>* only);
+  /// any. `only`: keys of the edges off paths that are cut, ascending; null: all. Throws: usage when they are far more
+  /// than the area needs, or more than that.
+  EdgeSubdivision(FineMesh& mesh, int64_t memory_bytes, const std::vector<uint64_t>* only);
   /// The vertices from u to v along their edge, without v.
   void append_chain(uint32_t u, uint32_t v, std::vector<uint32_t>& out) const;
 

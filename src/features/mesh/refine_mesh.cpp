@@ -143,9 +143,8 @@ void gather(const std::vector<Filling>& fillings, FineMesh& mesh) {
 
 }  // namespace
 
-FineMesh refine_mesh(FineMesh mesh, Context& context, const Buckets<uint32_t>* neighbours,
-                     const std::vector<uint64_t>* only) {
-  const EdgeSubdivision edges(mesh, context.memory_limit_bytes, neighbours, only);
+FineMesh refine_mesh(FineMesh mesh, Context& context, const std::vector<uint64_t>* only) {
+  const EdgeSubdivision edges(mesh, context.memory_limit_bytes, only);
   const size_t together = std::clamp<size_t>(mesh.triangles.size() / kTasks, 1, kMostTogether);
   const size_t tasks = (mesh.triangles.size() + together - 1) / together;
   std::vector<Filling> fillings(tasks, Filling(mesh));

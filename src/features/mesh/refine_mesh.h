@@ -34,10 +34,8 @@ inline PointQ8 rounded(const WorldPoint& p) {
 /// fills each triangle between the parts of its edges. Result: edges are at most half again as long as these parts;
 /// seeds of paths are at vertices. What becomes of a triangle depends on its corners only. Cost: a sort of the edges,
 /// then O(fine triangles); of a long thin triangle these are as many as its edges have parts. Throws: usage when that
-/// is far more than the area needs, or than the memory limit allows. `neighbours`: those of its vertices, ascending,
-/// where they are known; the edges then need no sort. `only`: keys of the edges off paths that are cut, ascending;
-/// null: all.
-FineMesh refine_mesh(FineMesh mesh, Context& context, const Buckets<uint32_t>* neighbours = nullptr,
-                     const std::vector<uint64_t>* only = nullptr);
+/// is far more than the area needs, or than the memory limit allows. `only`: keys of the edges off paths that are
+/// cut, ascending; null: all.
+FineMesh refine_mesh(FineMesh mesh, Context& context, const std::vector<uint64_t>* only = nullptr);
 
 }  // namespace isoshell

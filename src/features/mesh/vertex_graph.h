@@ -59,8 +59,4 @@ std::vector<Value> least_values(const VertexGraph& graph, const std::vector<Valu
   return value;
 }
 
-/// What least_values gives for lengths above 0 that grow by `growth` along the way, sooner: shorter lengths spread
-/// first, in bands, so that few vertices hear of a length that a shorter one replaces.
-std::vector<double> graded_lengths(const VertexGraph& graph, const std::vector<double>& own, double growth);
-
 }  // namespace isoshell

@@ -35,7 +35,7 @@ std::vector<double> graded(const VertexGraph& graph, const Limits& limits, doubl
     const double requested = limits.requested[v] * longest;
     own[v] = std::clamp(limits.most[v], std::max(kShortest * requested, longest / kMostLengthRatio), requested);
   });
-  return graded_lengths(graph, own, limits.growth);
+  return least_values(graph, own, [&](double length, double way) { return length + limits.growth * way; });
 }
 
 /// On paths, by their own lengths.
