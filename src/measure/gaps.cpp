@@ -10,6 +10,7 @@
 #include "core/copy_product.h"
 #include "core/index_sets.h"
 #include "core/parallel_ranges.h"
+#include "core/voxel_set.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"
 
@@ -32,14 +33,6 @@ bool face_away(Vec64 m, Vec64 n) {
   return mn < 0 && 4 * mn * mn > product(m, m) * product(n, n);
 }
 
-template <class Each>
-void for_each_corner(const Sheet& sheet, Each each) {
-  const VoxelSetView corners = sheet.corners.view();
-  for (int64_t leaf = 0; leaf < corners.leaf_key.size; ++leaf)
-    for_each_active(corners, leaf,
-                    [&](int offset, int64_t v) { each(v, voxel_at(leaf_of_key(corners.leaf_key[leaf]), offset)); });
-}
-
 bool share_a_corner(TriangleIndices s, TriangleIndices t) {
   const auto is_of_t = [&](uint32_t v) { return v == t.a || v == t.b || v == t.c; };
   return is_of_t(s.a) || is_of_t(s.b) || is_of_t(s.c);
@@ -52,7 +45,7 @@ std::vector<uint8_t> find_bridges(const SiteSet& of, const Sheet& on) {
   const OnHost<Sheet> sheet(on);
   std::vector<uint8_t> bridges(size_t(sheet->vertex_count()));
   const VoxelSetView voxels = sites->voxels.view();
-  for_each_corner(*sheet, [&](int64_t v, Voxel c) {
+  for_each_voxel(sheet->corners.view(), [&](Voxel c, int64_t v) {
     bool holds_surface = false;
     for (int o = 0; o < 8 && !holds_surface; ++o)
       holds_surface = find_voxel(voxels, {c.x - (o >> 2), c.y - (o >> 1 & 1), c.z - (o & 1)}) >= 0;
@@ -64,7 +57,7 @@ std::vector<uint8_t> find_bridges(const SiteSet& of, const Sheet& on) {
 void measure_bridges(const Sheet& on, const std::vector<uint8_t>& bridges, GapReport& report) {
   const OnHost<Sheet> sheet(on);
   std::vector<Voxel> corner(bridges.size());
-  for_each_corner(*sheet, [&](int64_t v, Voxel c) { corner[size_t(v)] = c; });
+  for_each_voxel(sheet->corners.view(), [&](Voxel c, int64_t v) { corner[size_t(v)] = c; });
   // Each bridging vertex takes the nearest of its neighbours' nearest corners of the rim, nearest first.
   std::vector<std::pair<int64_t, uint32_t>> rim_of(bridges.size(), {INT64_MAX, kNone});  // squared distance, vertex
   using Step = std::tuple<int64_t, uint32_t, uint32_t>;  // squared distance, rim, vertex
@@ -125,7 +118,7 @@ std::vector<uint8_t> find_gaps(const LatticeSurface& of, const Sheet& on, const 
 std::vector<Voxel> bridging_voxels(const Sheet& on, const std::vector<uint8_t>& bridges) {
   const OnHost<Sheet> sheet(on);
   std::vector<Voxel> voxels;
-  for_each_corner(*sheet, [&](int64_t v, Voxel c) {
+  for_each_voxel(sheet->corners.view(), [&](Voxel c, int64_t v) {
     for (int o = 0; o < 8 && bridges[size_t(v)]; ++o)
       voxels.push_back({c.x - (o >> 2), c.y - (o >> 1 & 1), c.z - (o & 1)});
   });

@@ -1,7 +1,7 @@
 // Measures of borders, intersections of triangles on the lattice, and fans that touch, on meshes that can be counted.
 #include <cmath>
 
-#include "features/cutting/jagged_paths.h"
+#include "features/mesh/curve_paths.h"
 #include "features/mesh/separate_fans.h"
 #include "features/mesh/weld_for_features.h"
 #include "isoshell/borders.h"

@@ -9,6 +9,7 @@
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/cut_fine_mesh.h"
 #include "features/mesh/collapsing_mesh.h"
+#include "geometry/triangle_list.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
@@ -20,18 +21,11 @@ constexpr double kLeastCosine = 0.5;     ///< between a triangle's normal and th
 constexpr int64_t kFewestPerSeed = 6;    ///< vertices inside of a patch whose vertices go
 constexpr uint32_t kTogether = 1 << 14;  ///< vertices that one task goes through
 
-std::vector<std::array<uint32_t, 3>> triangles_of(const SurfaceMesh& surface) {
-  std::vector<std::array<uint32_t, 3>> out;
-  out.reserve(size_t(surface.triangles.size()));
-  for (const TriangleIndices& t : surface.triangles) out.push_back({t.a, t.b, t.c});
-  return out;
-}
-
 /// The triangles of a surface while its vertices become fewer.
 class ThinnedTriangles : public CollapsingMesh<ThinnedTriangles, int64_t> {
  public:
   ThinnedTriangles(const CutSurface& cut, const FreeSeeds::Counts& seeds, int levels)
-      : CollapsingMesh(triangles_of(cut.surface), size_t(cut.surface.vertex_count())),
+      : CollapsingMesh(list_of(cut.surface.triangles.view()), size_t(cut.surface.vertex_count())),
         cut_(cut),
         surface_(cut.surface),
         scale_(1 << levels),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/vector_view.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/cut_fine_mesh.h"
 #include "features/mesh/refine_mesh.h"
@@ -29,13 +30,6 @@ class UsedVertices {
   const FineMesh& mesh_;
   std::vector<uint32_t> number_;
 };
-
-template <class T>
-Buffer<T> buffer_of(const std::vector<T>& values) {
-  Buffer<T> out(int64_t(values.size()));
-  std::copy(values.begin(), values.end(), out.begin());
-  return out;
-}
 
 std::vector<char> used_by(const DualMesh& mesh, int64_t vertices) {
   std::vector<char> is_used(size_t(vertices), 0);

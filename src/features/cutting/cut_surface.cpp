@@ -7,7 +7,6 @@
 
 #include "core/watched.h"
 #include "features/cutting/cut_fine_mesh.h"
-#include "features/cutting/jagged_paths.h"
 #include "features/mesh/flip_flat_edges.h"
 #include "features/mesh/refine_mesh.h"
 #include "features/seeds/edge_lengths.h"
@@ -137,12 +136,8 @@ double edge_length_for(const FeatureMesh& mesh, const CurveNetwork& network, int
   for (const auto& t : mesh.triangles)
     area += triangle_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
   for (const FeatureCurve& curve : network.curves) {
-    CurvePath path;
-    path.vertex = curve.vertex;
-    path.is_loop = curve.is_loop;
-    measure_path(mesh.vertices, path);
-    if (curve.kind == CurveKind::border) extra += path.length / 2;
-    if (curve.kind == CurveKind::non_manifold) extra -= path.length / 2;
+    const double sign = curve.kind == CurveKind::border ? 1 : curve.kind == CurveKind::non_manifold ? -1 : 0;
+    if (sign != 0) extra += sign * length_of(mesh.vertices, curve) / 2;
   }
   // vertices = 2 / sqrt(3) * area / e^2 + extra / e, solved for 1 / e.
   const double per_area = 2 / std::sqrt(3.0) * area;

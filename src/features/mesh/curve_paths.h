@@ -46,5 +46,10 @@ std::vector<uint64_t> path_edges(const std::vector<CurvePath>& paths);
 
 /// Arclengths and length from positions.
 void measure_path(const std::vector<WorldPoint>& position, CurvePath& path);
+double length_of(const std::vector<WorldPoint>& position, const FeatureCurve& curve);
+
+/// Marks the borders, and edges of three faces or more, that turn much, but within four edge lengths mostly back again.
+/// `edge_length` in 1/256 voxel.
+void find_jagged_paths(const std::vector<WorldPoint>& position, double edge_length, std::vector<CurvePath>& paths);
 
 }  // namespace isoshell

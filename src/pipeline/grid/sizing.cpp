@@ -156,14 +156,14 @@ bool field_decides(const RemeshOptions& options) {
   return (options.sizing || !options.region_edge_lengths.empty()) && !options.vertices;
 }
 
-RequestedLengths requested_lengths(const PreparedSurface& p) {
+RequestedLengths requested_lengths(const PreparedSurface& p, bool vary, double usual_world) {
   const RemeshOptions& options = p.options;
   RequestedLengths requested;
   requested.growth = options.gradation - 1;
-  if (p.sheet.lengths.at.empty()) return requested;
+  if (!vary) return requested;
   requested.field = options.sizing.get();
   requested.adaptivity = options.adaptivity;
-  requested.usual_world = p.target_of_input.edge_length_world;
+  requested.usual_world = usual_world;
   requested.shortest_world = shortest_edge_world(p.surface.frame.voxel_size, kCellOfEdge);
   return requested;
 }

@@ -24,8 +24,8 @@ double shortest_edge_world(double voxel_size, double cell_of_length);
 /// Whether lengths by place or region say how many vertices there are.
 bool field_decides(const RemeshOptions& options);
 
-/// What is asked for of a surface that is cut; nothing where lengths are all equal.
-RequestedLengths requested_lengths(const PreparedSurface& p);
+/// What is asked for of a surface that is cut: nothing but the growth where lengths do not vary.
+RequestedLengths requested_lengths(const PreparedSurface& p, bool vary, double usual_world);
 
 /// A field that decides the count, and has one length at all vertices of the soup, is an edge length.
 RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup);

@@ -167,7 +167,8 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
   CutPlan plan{mesh, curves, creases, p.surface.frame, seeds};
   report.grid.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
   CutOptions& how = plan.how;
-  how = {edge_length_for(mesh, network, seeds), 0, requested_lengths(p)};
+  how = {edge_length_for(mesh, network, seeds), 0,
+         requested_lengths(p, !p.sheet.lengths.at.empty(), p.target_of_input.edge_length_world)};
   if (before) how.before = before->carried;
   const bool lengths_decide = how.requested.vary() && field_decides(p.options);
   if (!lengths_decide && (how.requested.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;

@@ -12,17 +12,6 @@
 #include "isoshell/readable.h"
 
 namespace isoshell {
-namespace {
-
-double length_of(const FeatureMesh& mesh, const FeatureCurve& curve) {
-  CurvePath path;
-  path.vertex = curve.vertex;
-  path.is_loop = curve.is_loop;
-  measure_path(mesh.vertices, path);
-  return path.length;
-}
-
-}  // namespace
 
 const char* name_of(CurveKind kind) {
   switch (kind) {
@@ -52,7 +41,7 @@ void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool kee
   report.length_world = 0;
   for (const FeatureCurve& curve : network.curves)
     if (curve.kind != CurveKind::border && curve.kind != CurveKind::non_manifold)
-      report.length_world += length_of(mesh, curve);
+      report.length_world += length_of(mesh.vertices, curve);
   if (keeps_borders) report.border_loops = count_kind(network, CurveKind::border);  // until they are put together
 }
 
@@ -78,7 +67,7 @@ std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& net
   for (size_t c = 0; c < network.curves.size(); ++c) {
     const FeatureCurve& curve = network.curves[c];
     curves.push_back(
-        {int64_t(c), name_of(curve.kind), length_of(mesh, curve), mesh.vertices[curve.vertex.front()], ""});
+        {int64_t(c), name_of(curve.kind), length_of(mesh.vertices, curve), mesh.vertices[curve.vertex.front()], ""});
   }
   return curves;
 }

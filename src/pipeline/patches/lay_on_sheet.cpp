@@ -3,27 +3,15 @@
 
 #include "core/copy_product.h"
 #include "core/watched.h"
-#include "measure/crossings.h"
+#include "pipeline/patches/new_crossings.h"
 
 namespace isoshell {
 namespace {
 
 constexpr int kMostRounds = 5;
 
-std::vector<std::array<uint32_t, 2>> crossings_of(const FeatureMesh& mesh, const LatticeFrame& frame,
-                                                  const Context& context) {
-  Buffer<PointQ8> position(int64_t(mesh.vertices.size()));
-  for (int64_t v = 0; v < position.size(); ++v) position[v] = frame.snap(mesh.vertices[size_t(v)]);
-  Buffer<TriangleIndices> triangles(int64_t(mesh.triangles.size()));
-  for (int64_t t = 0; t < triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[size_t(t)];
-    triangles[t] = {a, b, c};
-  }
-  return crossing_pairs(position.view(), triangles.view(), {}, context.cancel);
-}
-
 /// Result: whether any of the vertices was elsewhere.
-bool take_back(const std::vector<std::array<uint32_t, 2>>& pairs, LaidCurves& laid) {
+bool take_back(const TrianglePairs& pairs, LaidCurves& laid) {
   bool any = false;
   for (const auto& pair : pairs)
     for (const uint32_t t : pair)

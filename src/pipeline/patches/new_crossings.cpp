@@ -2,11 +2,22 @@
 #include "pipeline/patches/new_crossings.h"
 
 #include "core/copy_product.h"
+#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "measure/crossings.h"
 #include "pipeline/patches/cut_curves.h"
 
 namespace isoshell {
+
+TrianglePairs crossings_of(const FeatureMesh& mesh, const LatticeFrame& frame, const Context& context) {
+  Buffer<PointQ8> points(int64_t(mesh.vertices.size()));
+  Buffer<TriangleIndices> triangles(int64_t(mesh.triangles.size()));
+  for_each_index(size_t(0), mesh.vertices.size(), [&](size_t v) { points[v] = frame.snap(mesh.vertices[v]); });
+  for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
+    triangles[t] = {mesh.triangles[t][0], mesh.triangles[t][1], mesh.triangles[t][2]};
+  });
+  return crossing_pairs(points.view(), triangles.view(), {}, context.cancel);
+}
 
 NewCrossings::NewCrossings(const PreparedSurface& p, const CutSurface& cut, Context& context)
     : p_(p),

@@ -13,6 +13,9 @@ namespace isoshell {
 
 using TrianglePairs = std::vector<std::array<uint32_t, 2>>;
 
+/// All pairs of triangles of a mesh that intersect on the lattice. Cost: as crossing_pairs.
+TrianglePairs crossings_of(const FeatureMesh& mesh, const LatticeFrame& frame, const Context& context);
+
 /// A result that is open may intersect itself where the input's triangles do, to within an edge; no other may. The
 /// input must outlive it, and is looked at only where a result intersects. In host memory. Cost: as crossing_pairs.
 class NewCrossings {

@@ -1,15 +1,14 @@
 // See own_faces.h.
 #include "pipeline/patches/own_faces.h"
 
-#include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "features/mesh/remove_slivers.h"
 #include "features/mesh/weld_for_features.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/readable.h"
-#include "measure/crossings.h"
 #include "pipeline/grid/sizing.h"
+#include "pipeline/patches/new_crossings.h"
 
 namespace isoshell {
 namespace {
@@ -22,13 +21,7 @@ bool meets_itself(const FeatureMesh& mesh, const LatticeFrame& frame, const Cont
   for (const auto& t : mesh.triangles)
     for (const uint32_t v : t)
       if (++around[v] > kMostAround) return false;
-  Buffer<PointQ8> points(int64_t(mesh.vertices.size()));
-  Buffer<TriangleIndices> triangles(int64_t(mesh.triangles.size()));
-  for_each_index(size_t(0), mesh.vertices.size(), [&](size_t v) { points[v] = frame.snap(mesh.vertices[v]); });
-  for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
-    triangles[t] = {mesh.triangles[t][0], mesh.triangles[t][1], mesh.triangles[t][2]};
-  });
-  return !crossing_pairs(points.view(), triangles.view(), {}, context.cancel).empty();
+  return !crossings_of(mesh, frame, context).empty();
 }
 
 }  // namespace

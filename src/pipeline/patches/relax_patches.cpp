@@ -11,13 +11,12 @@
 #include "pipeline/grid/attempt.h"
 #include "pipeline/patches/patches.h"
 #include "pipeline/patches/warm_patches.h"
-#include "pipeline/sheet/relax_level.h"
+#include "pipeline/sheet/hierarchy.h"
 
 namespace isoshell {
 namespace {
 
 constexpr int32_t kFinestTolerancePpb = 100000;  ///< of patches: their fixed seeds keep them from settling soon
-constexpr int64_t kFewestPerPart = 12;           ///< seeds of a level; with fewer its dual is no mesh
 constexpr int32_t kLastPasses = 10;              ///< of the finest level, on the surface itself after a coarser one
 constexpr int64_t kFewPerSeed = 13;              ///< vertices; coarser surfaces have 11 to 17
 

@@ -7,19 +7,20 @@
 
 #include "attributes/facing_point.h"
 #include "core/parallel_ranges.h"
+#include "core/vector_view.h"
 #include "core/watched.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/free_seeds.h"
 #include "features/seeds/carried_positions.h"
 #include "geometry/outward_normals.h"
+#include "geometry/triangle_list.h"
 #include "geometry/world_vector.h"
-#include "pipeline/sheet/warm_start.h"
+#include "pipeline/sheet/hierarchy.h"
 
 namespace isoshell {
 namespace {
 
 /// Six to eight passes where the surface moves little. Every pass undoes some of what was repaired beside curves.
-constexpr int32_t kWarmPasses = 40;
 constexpr int32_t kWarmTolerancePpb = 2000000;
 
 /// Of the corners of a triangle that are off curves the one whose part of a place is the largest; kNone where all are
@@ -43,8 +44,7 @@ std::vector<uint32_t> homes_inside(const CutSurface& cut, const PreviousFrame& p
     const PointQ8 p = cut.frame.snap(previous.carried[i]);
     carried_q8[i] = {double(p.x), double(p.y), double(p.z)};
   });
-  TriangleGrid::Triangles triangles;
-  for (const TriangleIndices& t : surface.triangles) triangles.push_back({t.a, t.b, t.c});
+  const TriangleGrid::Triangles triangles = list_of(surface.triangles.view());
   const TriangleGrid grid(points, triangles);
   const std::vector<PositionOnPath> on_paths = positions_on_paths(*cut.fine, carried_q8);
   const std::vector<WorldPoint> normals = outward_normals(previous.carried, previous.triangles);
@@ -103,8 +103,7 @@ SeededMesh seeds_inside(const CutSurface& cut, const PreviousFrame& previous, co
     const TriangleIndices of{seed_of[t[0]], seed_of[t[1]], seed_of[t[2]]};
     if (of.a != kNone && of.b != kNone && of.c != kNone) triangles.push_back(of);
   }
-  inside.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
-  std::copy(triangles.begin(), triangles.end(), inside.mesh.triangles.begin());
+  inside.mesh.triangles = buffer_of(triangles);
   return inside;
 }
 
@@ -118,8 +117,7 @@ RelaxedSeeds relax_patches_from_previous(const CutSurface& cut, const PatchOptio
   FreeSeeds::Counts before(patch_count(cut), 0);
   for (const uint32_t v : inside.seeds.home) ++before[cut.surface.patch[v]];
   const FreeSeeds::Counts counts = free_seeds.as_before(free_seeds.counts(fixed, options.seeds.count), before);
-  RelaxOptions relax = options.relax;
-  relax.max_passes = std::min(relax.max_passes, kWarmPasses);
+  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_requested);
   if (!options.tolerance_requested) relax.tolerance_ppb = kWarmTolerancePpb;
   return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, inside, options.seeds.seed), relax,
                         context);

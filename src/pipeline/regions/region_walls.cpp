@@ -78,27 +78,13 @@ CurveOptions curves_between_regions(const PreparedSurface& p) {
   return curves;
 }
 
-/// Where nothing is asked for edges are as long as they all would be.
-RequestedLengths lengths_on_walls(const PreparedSurface& p, double usual_world,
-                                  const std::vector<double>& of_face_world) {
-  const RemeshOptions& options = p.options;
-  RequestedLengths requested;
-  requested.growth = options.gradation - 1;
-  if (!wants_lengths(options)) return requested;
-  requested.field = options.sizing.get();
-  requested.of_face_world = of_face_world;
-  requested.adaptivity = options.adaptivity;
-  requested.usual_world = usual_world;
-  requested.shortest_world = shortest_edge_world(p.surface.frame.voxel_size, kCellOfEdge);
-  return requested;
-}
-
 SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, const std::vector<double>& of_face_world,
                     RemeshReport& report, Context& context) {
   const FeatureMesh& mesh = p.walls->mesh;
   CutOptions how;
   how.edge_length_world = edge_length_for(mesh, network, p.target.vertices);
-  how.requested = lengths_on_walls(p, how.edge_length_world, of_face_world);
+  how.requested = requested_lengths(p, wants_lengths(p.options), how.edge_length_world);
+  how.requested.of_face_world = of_face_world;
   how.is_rough = p.walls->regions.are_of_voxels;
   for (std::string& text : warnings_of_bounds(how.requested)) report.warnings.push_back(std::move(text));
   if (!p.options.edge_length_world && !(how.requested.vary() && field_decides(p.options)))

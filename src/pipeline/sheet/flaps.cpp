@@ -48,13 +48,6 @@ VoxelSet voxel_set_of(const LeafMasks& leaves, const VoxelSet& like) {
 }
 
 template <class Each>
-void for_each_corner(const Sheet& sheet, Each each) {
-  const VoxelSetView corners = sheet.corners.view();
-  for (int64_t leaf = 0; leaf < corners.leaf_key.size; ++leaf)
-    for_each_active(corners, leaf,
-                    [&](int offset, int64_t v) { each(v, voxel_at(leaf_of_key(corners.leaf_key[leaf]), offset)); });
-}
-template <class Each>
 void for_each_voxel_around(Voxel corner, Each each) {
   for (int o = 0; o < 8; ++o) each(Voxel{corner.x - (o >> 2), corner.y - (o >> 1 & 1), corner.z - (o & 1)});
 }
@@ -80,7 +73,7 @@ std::vector<uint8_t> find_two_sided(const Sheet& sheet) {
     const int64_t along = int64_t(q.x - p.x) * n.x + int64_t(q.y - p.y) * n.y + int64_t(q.z - p.z) * n.z;
     return along * along <= kMostThicknessQ8 * kMostThicknessQ8 * dot(n, n);
   };
-  for_each_corner(sheet, [&](int64_t v, Voxel c) {
+  for_each_voxel(sheet.corners.view(), [&](Voxel c, int64_t v) {
     if (sheet.source_triangle[v] == kNone) return;
     const Voxel axis = inward_axis(sheet.normal[v]);
     for (int32_t k = 1; k <= kDeepest; ++k) {
@@ -111,7 +104,7 @@ SiteSet sites_of_flaps(const SiteSet& sites, const Sheet& sheet) {
   const std::vector<uint8_t> near_inner = spread(sheet, inner);
   const VoxelSetView voxels = sites.voxels.view();
   LeafMasks leaves;
-  for_each_corner(sheet, [&](int64_t v, Voxel c) {
+  for_each_voxel(sheet.corners.view(), [&](Voxel c, int64_t v) {
     if (!two_sided[size_t(v)] || !near_inner[size_t(v)]) return;
     for_each_voxel_around(c, [&](Voxel o) {
       if (find_voxel(voxels, o) >= 0) add(leaves, o);
@@ -126,7 +119,7 @@ SiteSet sites_of_flaps(const SiteSet& sites, const Sheet& sheet) {
 std::vector<uint32_t> lay_as(const Sheet& laid, const VoxelSet& grown, Sheet& sheet) {
   const VoxelSetView laid_corners = laid.corners.view(), grown_voxels = grown.view();
   std::vector<uint32_t> now(size_t(laid.vertex_count()), kNone);
-  for_each_corner(sheet, [&](int64_t v, Voxel c) {
+  for_each_voxel(sheet.corners.view(), [&](Voxel c, int64_t v) {
     bool is_grown = false;
     for_each_voxel_around(c, [&](Voxel o) { is_grown |= find_voxel(grown_voxels, o) >= 0; });
     const int64_t w = is_grown ? -1 : find_voxel(laid_corners, c);
@@ -182,13 +175,10 @@ bool grow_flaps(PreparedSurface& p, int32_t grown_vox, int64_t smallest_componen
 SiteSet sites_near(const SiteSet& sites, const std::vector<PointQ8>& points, double reach_vox) {
   const OnHost<SiteSet> here(sites);
   const NearPoints near(points, reach_vox * kOneVoxelQ8);
-  const VoxelSetView voxels = here->voxels.view();
   LeafMasks leaves;
-  for (int64_t leaf = 0; leaf < voxels.leaf_key.size; ++leaf)
-    for_each_active(voxels, leaf, [&](int offset, int64_t) {
-      const Voxel v = voxel_at(leaf_of_key(voxels.leaf_key[leaf]), offset);
-      if (near.holds({v.x * kOneVoxelQ8, v.y * kOneVoxelQ8, v.z * kOneVoxelQ8})) add(leaves, v);
-    });
+  for_each_voxel(here->voxels.view(), [&](Voxel v, int64_t) {
+    if (near.holds({v.x * kOneVoxelQ8, v.y * kOneVoxelQ8, v.z * kOneVoxelQ8})) add(leaves, v);
+  });
   return {voxel_set_of(leaves, here->voxels)};
 }
 

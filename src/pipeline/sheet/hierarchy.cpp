@@ -10,13 +10,19 @@
 #include "core/stage_share.h"
 #include "isoshell/advanced/to_host.h"
 #include "pipeline/grid/thin_walls.h"
-#include "pipeline/sheet/relax_level.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell {
 namespace {
 
-constexpr int64_t kFewestPerComponent = 12;
+constexpr int64_t kMostRepairPerMille = 60;
+constexpr int32_t kCoarsePasses = 60;
+constexpr int32_t kCoarseTolerancePpb = 30000;
+constexpr int32_t kCoarseSmoothingSteps = 40;
+// Of the finest level after a coarser one. It ends early: the optimisation does the rest better than more passes.
+constexpr int32_t kFinestPasses = 40;
+constexpr int32_t kFinestTolerancePpb = 500000;
+
 constexpr int64_t kFewestSeedsPerHandle = 50;   // that a coarse proxy has too many or too few
 constexpr int64_t kFewestVerticesPerSeed = 24;  // of a coarse proxy: cells are nearly four voxels wide or more
 
@@ -28,7 +34,7 @@ int64_t coarser_count(int64_t count, const SheetTopology& topology) {
 
 /// Counts from coarse to fine, as long as a level has seeds enough.
 std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
-  const int64_t fewest = std::max(kFewestSeeds, kFewestPerComponent * sheet.components);
+  const int64_t fewest = std::max(kFewestSeeds, kFewestPerPart * sheet.components);
   std::vector<int64_t> counts{finest};
   while (int(counts.size()) < kMaxLevels) {
     const int64_t coarser = coarser_count(counts.back(), sheet);
@@ -110,6 +116,30 @@ class CoarseProxies {
 };
 
 }  // namespace
+
+std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
+                                      Context& context) {
+  const int64_t requested = seeds.size();
+  seeds = relax_on_sheet(surface, std::move(seeds), relax, context).seeds;
+  Triangulation dual = triangulate_dual(surface, std::move(seeds), {}, context);
+  if (dual.report.failed_cells > 0 || dual.seeds.size() - requested > requested * kMostRepairPerMille / 1000) return {};
+  SeededMesh mesh = collapse_edges(surface, std::move(dual), {requested}, context);
+  OptimizeOptions optimize;
+  optimize.smoothing_steps = kCoarseSmoothingSteps;
+  optimize.for_seeds = true;
+  return optimize_mesh(surface, std::move(mesh), optimize, context);
+}
+
+RelaxOptions for_coarse_level(RelaxOptions relax, bool tolerance_requested) {
+  relax.max_passes = kCoarsePasses;
+  if (!tolerance_requested) relax.tolerance_ppb = kCoarseTolerancePpb;
+  return relax;
+}
+RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_requested) {
+  relax.max_passes = std::min(relax.max_passes, kFinestPasses);
+  if (!tolerance_requested) relax.tolerance_ppb = kFinestTolerancePpb;
+  return relax;
+}
 
 RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions& options, Context& context,
                              const std::function<bool()>& is_in_vain) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/copy_product.h"
+#include "core/vector_view.h"
 #include "isoshell/advanced/to_host.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
@@ -90,8 +91,7 @@ class Preparation {
     });
     if (hollows.empty()) return;
     p.sites = to_host(p.sites);
-    p.sites.hollows = Buffer<Voxel>(int64_t(hollows.size()));
-    std::copy(hollows.begin(), hollows.end(), p.sites.hollows.begin());
+    p.sites.hollows = buffer_of(hollows);
   }
 
   double edge_vox(const PreparedSurface& p) const {

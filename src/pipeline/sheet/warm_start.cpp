@@ -5,12 +5,11 @@
 
 #include "geometry/world_vector.h"
 #include "measure/triangle_shape.h"
+#include "pipeline/sheet/hierarchy.h"
 
 namespace isoshell {
 namespace {
 
-constexpr int32_t kWarmPasses = 40;
-constexpr int32_t kWarmTolerancePpb = 500000;
 constexpr int32_t kWarmSmoothingSteps = 24;
 constexpr int64_t kMostGrowth = 2;    ///< or shrinking of the number of vertices from frame to frame
 constexpr double kMostSpoiled = 0.1;  ///< of the triangles
@@ -79,12 +78,10 @@ void choose_beginning(PreparedSurface& p, RemeshReport& report) {
 }
 
 RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,
-                                 RelaxOptions options, bool tolerance_requested, Context& context) {
+                                 const RelaxOptions& options, bool tolerance_requested, Context& context) {
   SeedSet seeds = attach_to_sheet(sheet, seeds_at(previous.carried, sheet.frame), 0, context);
   if (seeds.size() < wanted) seeds = with_more(sheet, previous, std::move(seeds), wanted, context);
-  options.max_passes = std::min(options.max_passes, kWarmPasses);
-  if (!tolerance_requested) options.tolerance_ppb = kWarmTolerancePpb;
-  return relax_on_sheet(sheet, std::move(seeds), options, context);
+  return relax_on_sheet(sheet, std::move(seeds), for_finest_level(options, tolerance_requested), context);
 }
 
 OptimizeOptions for_warm_frame(OptimizeOptions options) {

@@ -16,7 +16,7 @@ void choose_beginning(PreparedSurface& p, RemeshReport& report);
 /// were, and most of what a frame needs is there already. The passes and the tolerance of `options` stand when they are
 /// less, or asked for.
 RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,
-                                 RelaxOptions options, bool tolerance_requested, Context& context);
+                                 const RelaxOptions& options, bool tolerance_requested, Context& context);
 
 /// Much smoothing would wear down tips over many frames.
 OptimizeOptions for_warm_frame(OptimizeOptions options);

@@ -6,6 +6,7 @@
 
 #include "core/watched.h"
 #include "geometry/box.h"
+#include "geometry/triangle_list.h"
 #include "geometry/weld.h"
 #include "geometry/world_vector.h"
 #include "measure/box_tree.h"
@@ -34,7 +35,7 @@ LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, con
   for (uint32_t t = 0; t < soup.triangles.size(); ++t) {
     Corners corner = soup.triangles[t];
     for (uint32_t& v : corner) v = welded.place[v];
-    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    if (repeats_corner(corner)) continue;
     faces.face.push_back(corner);
     faces.source.push_back(t);
   }

@@ -10,6 +10,7 @@
 #include "core/watched.h"
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
+#include "isoshell/advanced/voxel_set.h"
 #include "measure/around_edge.h"
 #include "repair/arrangement/step_frame.h"
 #include "repair/solids/winding.h"
@@ -149,8 +150,6 @@ class CellFinder {
         out.volume_world[cell] += volume6_[s] / 6;
     return out;
   }
-
-  static constexpr uint32_t kNone = 0xffffffff;
 
   const Walls& walls_;
   const Context& context_;

@@ -12,13 +12,13 @@
 #include "core/watched.h"
 #include "geometry/half_edges.h"
 #include "geometry/weld.h"
+#include "isoshell/advanced/voxel_set.h"
 #include "isoshell/error.h"
 #include "measure/around_edge.h"
 
 namespace isoshell::repair {
 namespace {
 
-constexpr uint32_t kNone = 0xffffffff;
 constexpr int64_t kEdgesBetweenLooks = 1024;
 
 /// The attribute of one value a face, or null.

@@ -9,6 +9,7 @@
 #include "core/watched.h"
 #include "geometry/box.h"
 #include "geometry/half_edges.h"
+#include "geometry/triangle_list.h"
 #include "geometry/weld.h"
 #include "geometry/world_vector.h"
 #include "repair/solids/winding.h"
@@ -26,7 +27,7 @@ class PartFinder {
     for (uint32_t t = 0; t < soup.triangles.size(); ++t) {
       Corners corner = soup.triangles[t];
       for (uint32_t& v : corner) v = welded.place[v];
-      if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+      if (repeats_corner(corner)) continue;
       face_.push_back(corner);
       triangle_.push_back(t);
     }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/index_sets.h"
+#include "core/voxel_set.h"
 #include "repair/solids/winding.h"
 #include "voxel/exact_int.h"
 #include "voxel/leaf.h"
@@ -124,13 +125,11 @@ class HollowFinder {
 std::vector<Voxel> find_hollows(const LatticeSurface& surface, const SiteSet& sites, const SiteSamples& samples) {
   HollowFinder finder(surface, sites);
   const auto for_each_inner = [&](auto each) {
-    const VoxelSetView voxels = sites.voxels.view();
-    for (int64_t leaf = 0; leaf < voxels.leaf_key.size; ++leaf)
-      for_each_active(voxels, leaf, [&](int offset, int64_t site) {
-        const SiteSample& s = samples.sample[site];
-        Hollow& hollow = finder.hollow_of(surface.triangles[s.triangle]);
-        if (hollow.looks_inward()) each(hollow, voxel_at(leaf_of_key(voxels.leaf_key[leaf]), offset), s.normal);
-      });
+    for_each_voxel(sites.voxels.view(), [&](Voxel v, int64_t site) {
+      const SiteSample& s = samples.sample[site];
+      Hollow& hollow = finder.hollow_of(surface.triangles[s.triangle]);
+      if (hollow.looks_inward()) each(hollow, v, s.normal);
+    });
   };
   for_each_inner([](Hollow& hollow, Voxel, Normal8) { ++hollow.sites; });
   for_each_inner([&](Hollow& hollow, Voxel v, Normal8 normal) {
