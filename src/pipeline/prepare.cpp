@@ -90,8 +90,9 @@ void finish(PreparedSurface& p, const PatchSource& source, RemeshReport& report,
     note_digest(options, report, context, "shell", p.shell);
   }
   report_surface(p, report);
-  timed(report, "lengths", context, [&] { set_lengths(p, report, context); });
-  if (wants_lengths(options)) choose_beginning(p, report);
+  for (std::string& text : timed(report, "lengths", context, [&] { return set_lengths(p, context); }))
+    report.warnings.push_back(std::move(text));
+  if (wants_lengths(options)) report.coherence.why_cold = choose_beginning(p);
   cut_into_patches(source, p, report, context);
   note_digests(p, report, context);
 }
@@ -105,8 +106,7 @@ std::optional<double> smallest_cell_world(const TriangleSoup& soup, const Plan& 
   surface.topology = plan.input;
   PreparedSurface p =
       prepare_surface(std::move(surface), requested_closing(plan, usual), plan.options, report, context);
-  RemeshReport unsaid;
-  timed(report, "lengths", context, [&] { set_lengths(p, unsaid, context); });
+  timed(report, "lengths", context, [&] { set_lengths(p, context); });
   if (p.sheet.lengths.at.empty()) return {};
   return smallest_cell_vox(p, context) * usual.voxel_size;
 }

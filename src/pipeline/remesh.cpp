@@ -7,7 +7,6 @@
 #include "core/copy_product.h"
 #include "features/cutting/cut_surface.h"
 #include "geometry/given_surface.h"
-#include "isoshell/advanced/to_host.h"
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
 #include "measure/crossing_corners.h"

@@ -1,7 +1,6 @@
 // See creases_before.h.
 #include "features/curves/creases_before.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "features/curves/creases.h"

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "features/curves/edge_chains.h"
-#include "geometry/world_vector.h"
 
 namespace isoshell {
 

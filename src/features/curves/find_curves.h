@@ -1,7 +1,6 @@
 // Where a mesh is not smooth: its borders, non-manifold edges and creases, as curves between corners.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "features/curves/edge_chains.h"

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "features/mesh/mesh_edges.h"
-#include "geometry/world_vector.h"
 
 namespace isoshell {
 

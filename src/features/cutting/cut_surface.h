@@ -7,7 +7,6 @@
 #include "features/mesh/feature_mesh.h"
 #include "features/seeds/requested_lengths.h"
 #include "isoshell/advanced/lattice.h"
-#include "isoshell/advanced/seed_set.h"
 #include "isoshell/advanced/surface_mesh.h"
 #include "isoshell/backend.h"
 #include "isoshell/regions.h"

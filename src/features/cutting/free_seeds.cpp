@@ -8,7 +8,6 @@
 
 #include "core/parallel_ranges.h"
 #include "features/cutting/curve_seeds.h"
-#include "features/mesh/mesh_fans.h"
 #include "isoshell/error.h"
 #include "voxel/exact_int.h"
 #include "voxel/random.h"

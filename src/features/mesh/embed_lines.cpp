@@ -5,7 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "features/mesh/mesh_fans.h"
+#include "geometry/half_edges.h"
 #include "geometry/segment.h"
 #include "isoshell/advanced/voxel_set.h"
 

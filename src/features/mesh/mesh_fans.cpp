@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/parallel_ranges.h"
-#include "geometry/half_edges.h"
 #include "isoshell/advanced/voxel_set.h"
 #include "isoshell/error.h"
 #include "voxel/union_find.h"

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "core/buckets.h"
 #include "features/mesh/curve_paths.h"
 #include "isoshell/advanced/lattice.h"
 #include "isoshell/backend.h"

@@ -1,7 +1,6 @@
 // find_vertex_graph (see vertex_graph.h).
 #include "features/mesh/vertex_graph.h"
 
-#include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
 
 namespace isoshell {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "core/parallel_ranges.h"
 #include "features/seeds/length_limits.h"

@@ -1,6 +1,5 @@
 #include "pipeline/grid/shown_parts.h"
 
-#include <algorithm>
 #include <sstream>
 
 #include "isoshell/readable.h"

@@ -74,20 +74,22 @@ class Bounded {
   }
   Buffer<uint32_t> raw() const { return raw_.to_host(); }
 
-  void warn(const std::vector<double>& wanted, const Sheet& sheet, double scale, RemeshReport& report) const {
+  std::vector<std::string> warnings(const std::vector<double>& wanted, const Sheet& sheet, double scale) const {
+    std::vector<std::string> warnings;
     std::ostringstream text;
     if (wanted[least_at_] < floor_) {
       text << "edges of " << wanted[least_at_] * scale << " are asked for " << near_vertex(sheet, least_at_)
            << "; a grid of resolution " << sheet.frame.resolution << " carries none shorter than " << floor_ * scale
            << ": raise --resolution or --max-memory";
-      report.warnings.push_back(text.str());
+      warnings.push_back(text.str());
     }
     if (wanted[largest_at_] > cap_) {
       text.str("");
       text << "edges of " << wanted[largest_at_] * scale << " are asked for " << near_vertex(sheet, largest_at_)
            << "; they are at most " << cap_ * scale << ", " << kMostLengthRatio << " times the shortest";
-      report.warnings.push_back(text.str());
+      warnings.push_back(text.str());
     }
+    return warnings;
   }
 
  private:
@@ -146,6 +148,42 @@ double even_length_world(const SizingField& field, const TriangleSoup& soup) {
   return length.empty() ? 0 : length[0];
 }
 
+/// Result: warnings.
+std::vector<std::string> find_lengths(PreparedSurface& p, Context& context) {
+  const RemeshOptions& options = p.options;
+  std::vector<std::string> warnings;
+  if (!wants_lengths(options)) return warnings;
+  Sheet& sheet = p.sheet;
+  const std::vector<double> wanted = wanted_lengths(p, context);
+  const double first = wanted[0], voxel_size = sheet.frame.voxel_size;
+  if (std::all_of(wanted.begin(), wanted.end(), [&](double l) { return l == first; })) {
+    if (field_decides(options)) p.vertices_of_lengths = vertices_of_edge(first, sheet_area_world(sheet));
+    return warnings;
+  }
+  const int64_t requested = field_decides(options) ? 0 : target_of(options, sheet_area_world(sheet)).vertices;
+  double cell = kCellOfEdge;
+  if (requested > 0) {
+    sheet.lengths = limit_edge_lengths(sheet, Bounded(wanted, voxel_size, cell).raw(), kMostLengthSlopeQ16, context);
+    cell = cell_of_length(sheet, requested, context);
+  }
+  int64_t slope_q16 = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const Bounded bounded(wanted, voxel_size, cell);
+    slope_q16 =
+        std::min<int64_t>(std::llround((options.gradation - 1) * kCellOfEdge / cell * 65536), kMostLengthSlopeQ16);
+    sheet.lengths = limit_edge_lengths(sheet, bounded.raw(), slope_q16, context);
+    const double now = requested > 0 ? cell_of_length(sheet, requested, context) : cell;
+    const bool has_converged = std::abs(now / cell - 1) < 0.01;
+    if (has_converged || round + 1 == kRounds) warnings = bounded.warnings(wanted, sheet, cell / kCellOfEdge);
+    cell = now;
+    if (has_converged) break;
+  }
+  if (options.adaptivity > 0)
+    smooth_lengths(requested > 0 ? requested : vertices_of_lengths(sheet, context), slope_q16, sheet, context);
+  if (requested == 0) p.vertices_of_lengths = vertices_of_lengths(sheet, context);
+  return warnings;
+}
+
 }  // namespace
 
 double shortest_edge_world(double voxel_size, double cell_of_length) {
@@ -178,47 +216,10 @@ RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) 
   return options;
 }
 
-namespace {
-
-void find_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
-  const RemeshOptions& options = p.options;
-  if (!wants_lengths(options)) return;
-  Sheet& sheet = p.sheet;
-  const std::vector<double> wanted = wanted_lengths(p, context);
-  const double first = wanted[0], voxel_size = sheet.frame.voxel_size;
-  if (std::all_of(wanted.begin(), wanted.end(), [&](double l) { return l == first; })) {
-    if (!field_decides(options)) return;
-    p.vertices_of_lengths = vertices_of_edge(first, sheet_area_world(sheet));
-    return;
-  }
-  const int64_t requested = field_decides(options) ? 0 : target_of(options, sheet_area_world(sheet)).vertices;
-  double cell = kCellOfEdge;
-  if (requested > 0) {
-    sheet.lengths = limit_edge_lengths(sheet, Bounded(wanted, voxel_size, cell).raw(), kMostLengthSlopeQ16, context);
-    cell = cell_of_length(sheet, requested, context);
-  }
-  int64_t slope_q16 = 0;
-  for (int round = 0; round < kRounds; ++round) {
-    const Bounded bounded(wanted, voxel_size, cell);
-    slope_q16 =
-        std::min<int64_t>(std::llround((options.gradation - 1) * kCellOfEdge / cell * 65536), kMostLengthSlopeQ16);
-    sheet.lengths = limit_edge_lengths(sheet, bounded.raw(), slope_q16, context);
-    const double now = requested > 0 ? cell_of_length(sheet, requested, context) : cell;
-    const bool has_converged = std::abs(now / cell - 1) < 0.01;
-    if (has_converged || round + 1 == kRounds) bounded.warn(wanted, sheet, cell / kCellOfEdge, report);
-    cell = now;
-    if (has_converged) break;
-  }
-  if (options.adaptivity > 0)
-    smooth_lengths(requested > 0 ? requested : vertices_of_lengths(sheet, context), slope_q16, sheet, context);
-  if (requested == 0) p.vertices_of_lengths = vertices_of_lengths(sheet, context);
-}
-
-}  // namespace
-
-void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context) {
-  find_lengths(p, report, context);
+std::vector<std::string> set_lengths(PreparedSurface& p, Context& context) {
+  std::vector<std::string> warnings = find_lengths(p, context);
   set_target(p);
+  return warnings;
 }
 
 double smallest_cell_vox(const PreparedSurface& p, Context& context) {

@@ -31,8 +31,8 @@ RequestedLengths requested_lengths(const PreparedSurface& p, bool vary, double u
 RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup);
 
 /// Gives the sheet its edge lengths, none when they are all equal; then p.vertices_of_lengths where the field decides
-/// it.
-void set_lengths(PreparedSurface& p, RemeshReport& report, Context& context);
+/// it. Result: warnings.
+std::vector<std::string> set_lengths(PreparedSurface& p, Context& context);
 
 /// Width of the cells where they are smallest, in voxels.
 double smallest_cell_vox(const PreparedSurface& p, Context& context);

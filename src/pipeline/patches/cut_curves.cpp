@@ -15,7 +15,6 @@
 #include "pipeline/grid/sizing.h"
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/lay_on_sheet.h"
-#include "pipeline/patches/sheet_when_needed.h"
 
 namespace isoshell {
 namespace {
@@ -73,9 +72,9 @@ int64_t vertices_of(const PreparedSurface& p, bool is_open) {
 }
 
 /// An estimate with the fine surface, which has about 21 vertices a seed. Throws: NoRoom where that is above the limit.
-int64_t bytes_when_cut(int64_t seeds, const RemeshReport& report, const Context& context) {
+int64_t bytes_when_cut(int64_t seeds, int64_t bytes_before, const Context& context) {
   constexpr int64_t kBytesPerSeed = 21 * 350;
-  const int64_t bytes = report.grid.memory_estimate_bytes + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
+  const int64_t bytes = bytes_before + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
   if (limit > 0 && bytes > limit)
     throw NoRoom("features", "the surface cut along them would take about " + std::to_string(bytes >> 20) +
                                  " MiB, more than the limit of " + std::to_string(limit >> 20) +
@@ -165,7 +164,7 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
                       const FoundCreases& creases, CutSource source, int64_t seeds, const PreviousFrame* before,
                       const PreparedSurface& p, RemeshReport& report, Context& context) {
   CutPlan plan{mesh, curves, creases, p.surface.frame, seeds};
-  report.grid.memory_estimate_bytes = bytes_when_cut(seeds, report, context);
+  report.grid.memory_estimate_bytes = bytes_when_cut(seeds, report.grid.memory_estimate_bytes, context);
   CutOptions& how = plan.how;
   how = {edge_length_for(mesh, network, seeds), 0,
          requested_lengths(p, !p.sheet.lengths.at.empty(), p.target_of_input.edge_length_world)};
@@ -269,7 +268,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
     const CurveNetwork network = run_with_threads(context, [&] { return find_curves(mesh, curves, *known, &creases); });
     const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(p);
     report_found(mesh, network, is_open, found);
-    warn_of_branches(mesh, network, report);
+    warn_of_branches(mesh, network, report.warnings);
     found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
     if (found.curves == 0 && !is_open) return "";
     all = describe(mesh, network);

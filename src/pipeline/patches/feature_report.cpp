@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
-#include "core/copy_product.h"
 #include "features/mesh/curve_paths.h"
 #include "geometry/box.h"
-#include "geometry/world_vector.h"
 #include "isoshell/readable.h"
 
 namespace isoshell {
@@ -45,7 +42,7 @@ void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool kee
   if (keeps_borders) report.border_loops = count_kind(network, CurveKind::border);  // until they are put together
 }
 
-void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, RemeshReport& report) {
+void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, std::vector<std::string>& warnings) {
   int64_t edges = 0;
   const WorldPoint* at = nullptr;
   for (const FeatureCurve& curve : network.curves) {
@@ -58,8 +55,7 @@ void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, Reme
                            " of more than two faces, or of two that disagree about the outside, the first at " +
                            readable_place(*at, box_of(mesh.vertices)) +
                            ": a result that is a manifold cannot have them, and follows the surface around";
-  std::vector<std::string>& all = report.warnings;
-  if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
+  if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
 }
 
 std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network) {

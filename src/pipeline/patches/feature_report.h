@@ -21,7 +21,7 @@ int64_t count_kind(const CurveNetwork& network, CurveKind kind);
 void report_found(const FeatureMesh& mesh, const CurveNetwork& network, bool keeps_borders, FeatureReport& report);
 
 /// Warns of edges of more than two faces, once, and says where: no result has them.
-void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, RemeshReport& report);
+void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, std::vector<std::string>& warnings);
 
 /// Every curve as the report names it, should it be lost.
 std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network);

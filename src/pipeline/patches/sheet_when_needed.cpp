@@ -25,7 +25,7 @@ std::optional<PreparedSurface> prepare_patches_alone(LatticeSurface surface, con
                                                      Context& context) {
   PreparedSurface p = begin_with(std::move(surface), options);
   RemeshReport tried = report;
-  choose_beginning(p, tried);
+  tried.coherence.why_cold = choose_beginning(p);
   if (!p.previous) return {};
   cut_into_patches(source, p, tried, context);
   if (!is_on_own_triangles(p)) {

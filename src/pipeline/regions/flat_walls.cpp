@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "features/mesh/refine_mesh.h"
 #include "geometry/world_vector.h"
 
 namespace isoshell {

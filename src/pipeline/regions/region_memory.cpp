@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "core/parallel_ranges.h"
 #include "core/wall_memory.h"

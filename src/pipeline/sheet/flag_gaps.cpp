@@ -2,7 +2,6 @@
 #include "pipeline/sheet/flag_gaps.h"
 
 #include "core/copy_product.h"
-#include "isoshell/advanced/to_host.h"
 #include "isoshell/gaps.h"
 #include "pipeline/grid/thin_walls.h"
 

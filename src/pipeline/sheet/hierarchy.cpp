@@ -2,13 +2,10 @@
 #include "pipeline/sheet/hierarchy.h"
 
 #include <algorithm>
-#include <optional>
 #include <vector>
 
-#include "core/copy_product.h"
 #include "core/seed_count.h"
 #include "core/stage_share.h"
-#include "isoshell/advanced/to_host.h"
 #include "pipeline/grid/thin_walls.h"
 #include "voxel/exact_int.h"
 

@@ -32,8 +32,7 @@ MergedWalls merge_walls(const PreparedSurface& prepared, const std::vector<Point
   const double edge_vox = edge_length_on_sheet_world(p) / p.surface.frame.voxel_size;
   merged.grown_vox = std::min(std::max(1, growth_for_edge(edge_vox) / 4) << times_before, kMostGrownVox);
   grow_at(p, sites_near(p.sites, points, edge_vox), merged.grown_vox, smallest_component_q16(p), context);
-  RemeshReport unsaid;
-  set_lengths(p, unsaid, context);
+  set_lengths(p, context);
   return merged;
 }
 

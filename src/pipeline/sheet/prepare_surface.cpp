@@ -31,7 +31,7 @@ class Preparation {
 
   PreparedSurface from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
     PreparedSurface p = begin_with(std::move(surface), options_);
-    if (!wants_lengths(options_)) choose_beginning(p, report_);
+    if (options_.previous && !wants_lengths(options_)) report_.coherence.why_cold = choose_beginning(p);
     p.creases = begin_crease_search(p, report_, context_);
     p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
     p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });

@@ -70,11 +70,12 @@ std::string reason_to_begin_cold(const PreviousFrame& previous, int64_t wanted) 
 
 }  // namespace
 
-void choose_beginning(PreparedSurface& p, RemeshReport& report) {
+std::string choose_beginning(PreparedSurface& p) {
   const std::shared_ptr<const PreviousFrame>& before = p.options.previous;
-  if (!before) return;
-  report.coherence.why_cold = reason_to_begin_cold(*before, p.target.vertices);
-  if (report.coherence.why_cold.empty()) p.previous = before;
+  if (!before) return "";
+  std::string why_cold = reason_to_begin_cold(*before, p.target.vertices);
+  if (why_cold.empty()) p.previous = before;
+  return why_cold;
 }
 
 RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previous, int64_t wanted,

@@ -1,15 +1,13 @@
 // A frame that begins with the vertices of the frame before.
 #pragma once
 
-#include <string>
-
 #include "pipeline/grid/prepared_surface.h"
 
 namespace isoshell {
 
 /// Decides whether a run begins with the frame before, once it is known how many vertices it is to have: sets
-/// p.previous, and says in the report why not where there is one.
-void choose_beginning(PreparedSurface& p, RemeshReport& report);
+/// p.previous. Result: why it does not where there is one.
+std::string choose_beginning(PreparedSurface& p);
 
 /// Seeds where the vertices of the frame before are now, with their numbers, and more in the middles of the longest
 /// edges where more are wanted; relaxed without levels, and in few passes: every pass takes vertices from where they

@@ -1,14 +1,10 @@
 // See arrange_faces.h.
 #include "repair/arrangement/arrange_faces.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/watched.h"
 #include "geometry/box.h"
 #include "geometry/triangle_list.h"
 #include "geometry/weld.h"
-#include "geometry/world_vector.h"
 #include "measure/box_tree.h"
 #include "repair/arrangement/find_contacts.h"
 #include "repair/arrangement/insert_contacts.h"

@@ -2,8 +2,6 @@
 #include "repair/arrangement/insert_contacts.h"
 
 #include <algorithm>
-#include <cmath>
-#include <tuple>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"

@@ -2,7 +2,6 @@
 // each other in doubles, which are right to a millionth of a step.
 #include "repair/arrangement/meet_faces.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "geometry/segment.h"

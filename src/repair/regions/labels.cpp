@@ -1,7 +1,6 @@
 // See labels.h.
 #include "repair/regions/labels.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <utility>

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "isoshell/backend.h"
 #include "repair/regions/cells.h"
 #include "repair/regions/walls.h"
 

@@ -1,7 +1,6 @@
 // See parts.h.
 #include "repair/regions/parts.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

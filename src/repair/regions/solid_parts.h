@@ -1,7 +1,6 @@
 // The components of a soup as solids.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

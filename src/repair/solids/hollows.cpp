@@ -1,6 +1,5 @@
 #include "repair/solids/hollows.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <optional>
 

@@ -1,7 +1,6 @@
 #include "repair/solids/joined_components.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/index_sets.h"
 #include "geometry/half_edges.h"

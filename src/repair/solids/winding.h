@@ -31,15 +31,6 @@ class RayColumns {
     }
   }
 
-  /// Calls visit(face) for the faces, some of them more than once, whose boxes may meet this one.
-  template <class Visit>
-  void for_each_near(const WorldBox& box, Visit visit) const {
-    const auto& [lo, hi] = box;
-    for (int64_t y = column_of(lo.y, 0); y <= column_of(hi.y, 0); ++y)
-      for (int64_t z = column_of(lo.z, 1); z <= column_of(hi.z, 1); ++z)
-        for (const uint32_t face : in_column_.in(y * cells_[1] + z)) visit(face);
-  }
-
  private:
   int64_t column_of(double at, int axis) const;
   struct Columns {
