@@ -1,6 +1,7 @@
 #include "attributes/transfer_faces.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "attributes/facing_point.h"
 #include "core/attribute_values.h"
@@ -37,43 +38,6 @@ FaceShape shape_of(const TriangleMesh& mesh, size_t face) {
   return {{a, b, c}, (1. / 3) * (a + b + c), doubled_area(a, b, c)};
 }
 
-/// Numbers that were seen, few of very many. Kept from one use to the next.
-class SeenNumbers {
- public:
-  void clear() {
-    table_.assign(size_t(64), kEmpty);
-    count_ = 0;
-  }
-  /// False when it was there.
-  bool add(uint32_t number) {
-    if (2 * (count_ + 1) > table_.size()) grow();
-    uint32_t& slot = slot_of(number);
-    if (slot == number) return false;
-    slot = number;
-    ++count_;
-    return true;
-  }
-
- private:
-  static constexpr uint32_t kEmpty = 0xffffffff;
-
-  uint32_t& slot_of(uint32_t number) {
-    size_t slot = (number * size_t(0x9e3779b97f4a7c15u)) >> 32;
-    for (slot &= table_.size() - 1; table_[slot] != kEmpty && table_[slot] != number;)
-      slot = (slot + 1) & (table_.size() - 1);
-    return table_[slot];
-  }
-  void grow() {
-    std::vector<uint32_t> old(2 * table_.size(), kEmpty);
-    old.swap(table_);
-    for (const uint32_t number : old)
-      if (number != kEmpty) slot_of(number) = number;
-  }
-
-  std::vector<uint32_t> table_;
-  size_t count_ = 0;
-};
-
 /// The part of the source around a point that continues from one triangle without a jump.
 class Surroundings {
  public:
@@ -82,14 +46,13 @@ class Surroundings {
   /// Triangles that are up to `reach` farther from a point than the one to start with.
   void find(WorldPoint p, uint32_t start, double reach) {
     found_.assign(1, start);
-    seen_.clear();
-    seen_.add(start);
+    seen_ = {start};
     reach += std::sqrt(nearest(p, start).distance_sq);
     for (size_t i = 0; i < found_.size(); ++i)
       for (const uint32_t e : source_.edges.of_triangle[found_[i]]) {
         if (!source_.edges.is_inner(e) || jumps_[e] != Jump::none) continue;
         const uint32_t next = source_.edges.across(e, found_[i]);
-        if (seen_.add(next) && nearest(p, next).distance_sq <= reach * reach) found_.push_back(next);
+        if (seen_.insert(next).second && nearest(p, next).distance_sq <= reach * reach) found_.push_back(next);
       }
   }
 
@@ -116,7 +79,7 @@ class Surroundings {
   const WeldedSource& source_;
   const std::vector<Jump>& jumps_;
   std::vector<uint32_t> found_;
-  SeenNumbers seen_;
+  std::unordered_set<uint32_t> seen_;
 };
 
 /// Corners of one vertex that have the same value share it. `values` are per corner; they end in the order of the
