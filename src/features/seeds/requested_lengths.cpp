@@ -14,8 +14,7 @@
 namespace isoshell {
 namespace {
 
-constexpr double kLeastDensity = 1.0 / 16;  ///< of vertices where nothing is curved, over the mean
-constexpr int kSmoothing = 8;               ///< rounds that spread curvature
+constexpr int kSmoothing = 8;  ///< rounds that spread curvature
 constexpr double kTurnUnit = 1 << 16;
 constexpr double kAreaUnit = 1 << 6;
 

@@ -22,6 +22,7 @@ struct RequestedLengths {
 
 /// Most that lengths differ by: what EdgeLengthsView::mass has room for.
 constexpr double kMostLengthRatio = 16;
+constexpr double kLeastDensity = 1.0 / 16;  ///< of vertices where nothing is curved, over the mean
 
 /// Gives the vertices the lengths asked for: those of the field, on faces that have lengths the shortest around, by
 /// curvature off the paths, and at most sixteen times the shortest; above 0 vertices in proportion, so that about so

@@ -13,7 +13,6 @@ namespace {
 constexpr int kRounds = 4;              // of limits that depend on the lengths they limit
 constexpr int64_t kMostSmoothing = 32;  // of normals
 constexpr int64_t kMostLengthSmoothing = 128;
-constexpr double kLeastDensity = 1.0 / 16;  // of vertices where nothing is curved, over the mean
 
 /// Rounds of smoothing that spread a normal over most of an edge: each spreads it by half a voxel squared. More blunt
 /// sharp bends, fewer take noise for curvature.

@@ -6,7 +6,6 @@ namespace isoshell {
 namespace {
 
 constexpr double kThicknessPerEdge = 0.8;  // at half of it angles at rims fall to 22 degrees here and there
-constexpr int32_t kMostGrownVox = 9;       // closed by as much again it fits into the lattice's margin
 
 }  // namespace
 

@@ -6,6 +6,8 @@
 
 namespace isoshell {
 
+constexpr int32_t kMostGrownVox = 9;  ///< closed by as much again it fits into the lattice's margin
+
 /// How far walls without thickness grow to each side so that edges of this length turn around their rims: cells are as
 /// wide as a rim then, and triangles across it as good as others.
 int32_t growth_for_edge(double edge_vox);

@@ -12,11 +12,6 @@
 #include "pipeline/sheet/flaps.h"
 
 namespace isoshell {
-namespace {
-
-constexpr int32_t kMostGrownVox = 9;  // as of thin walls: fits into the lattice's margin
-
-}  // namespace
 
 MergedWalls merge_walls(const PreparedSurface& prepared, const std::vector<PointQ8>& points, int times_before,
                         Context& context) {

@@ -18,8 +18,6 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr int64_t kEdgesBetweenLooks = 1024;
-
 /// Side 2 w is the front of wall w, and 2 w + 1 its back.
 uint32_t side(uint32_t wall, bool is_back) { return 2 * wall + (is_back ? 1 : 0); }
 
@@ -47,9 +45,9 @@ class CellFinder {
     const StepFrame frame(walls_.box);
     std::vector<WorldPoint> on_lattice;
     for (const WorldPoint& p : walls_.point) on_lattice.push_back(as_world(frame.from(p)));
-    int64_t step = 0;
+    CancelWatch watch(context_, "regions");
     for_each_edge(edges, [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
-      if (step++ % kEdgesBetweenLooks == 0) check_cancel(context_, "regions");
+      watch.check();
       std::vector<TriangleAtEdge> around = triangles_at_edge(walls_.triangle, u, at_edge);
       if (around.size() > 2) sort_around_edge(on_lattice, u, v, around);
       for (size_t i = 0; i < around.size(); ++i) {

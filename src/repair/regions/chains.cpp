@@ -12,8 +12,6 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr int64_t kStepsBetweenLooks = 1024;  // of walls and edges
-
 /// What a part's walls sum up to at an edge, by each way to count them: 0 where the part is closed there.
 struct PartAtEdge {
   uint32_t part;
@@ -23,7 +21,7 @@ struct PartAtEdge {
 class ChainFinder {
  public:
   ChainFinder(const Walls& walls, const Parts& parts, const Context& context)
-      : walls_(walls), parts_(parts), context_(context) {
+      : walls_(walls), parts_(parts), watch_(context, "regions") {
     out_.part.resize(parts.count());
     flaws_.assign(parts.count(), {0, 0, 0});
     has_side_.assign(parts.count(), 0);
@@ -43,12 +41,8 @@ class ChainFinder {
   }
 
  private:
-  void look_for_cancel() {
-    if (step_++ % kStepsBetweenLooks == 0) check_cancel(context_, "regions");
-  }
-
   void list_parts(size_t wall) {
-    look_for_cancel();
+    watch_.check();
     out_.first.push_back(uint32_t(out_.on_wall.size()));
     std::vector<std::array<uint32_t, 2>> here;  // part, whether it is turned
     for (const FaceOnWall& f : walls_.faces_on(wall)) here.push_back({parts_.of_face[f.source], f.is_turned ? 1u : 0u});
@@ -67,7 +61,7 @@ class ChainFinder {
   }
 
   void look_at(uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
-    look_for_cancel();
+    watch_.check();
     std::vector<PartAtEdge> here;
     for (const EdgeSide& s : at_edge) {
       const int32_t rises = walls_.triangle[s.half_edge / 3][s.half_edge % 3] == u ? 1 : -1;
@@ -92,8 +86,7 @@ class ChainFinder {
 
   const Walls& walls_;
   const Parts& parts_;
-  const Context& context_;
-  int64_t step_ = 0;
+  CancelWatch watch_;
   Chains out_;
   std::vector<std::array<int64_t, 3>> flaws_;  ///< per part and way to count: edges where it is open
   std::vector<uint8_t> has_side_;              ///< per part: on some wall it looks to one side alone

@@ -11,14 +11,11 @@
 #include "core/watched.h"
 #include "geometry/half_edges.h"
 #include "geometry/weld.h"
-#include "isoshell/advanced/voxel_set.h"
 #include "isoshell/error.h"
 #include "measure/around_edge.h"
 
 namespace isoshell::repair {
 namespace {
-
-constexpr int64_t kEdgesBetweenLooks = 1024;
 
 /// The attribute of one value a face, or null.
 const Attribute* find_of_faces(const TriangleSoup& soup, const std::string& name) {
@@ -88,10 +85,10 @@ void join_borders(const TriangleSoup& soup, const std::vector<uint8_t>& is_alone
     return is_alone[s.half_edge] && a != b && b != c && c != a;
   };
   std::vector<EdgeSide> kept;
-  int64_t step = 0;
+  CancelWatch watch(context, "regions");
   for_each_edge(find_edge_sides(placed, welded.position.size()),
                 [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
-                  if (step++ % kEdgesBetweenLooks == 0) check_cancel(context, "regions");
+                  watch.check();
                   kept.clear();
                   for (const EdgeSide& s : at_edge)
                     if (is_kept(s)) kept.push_back(s);
@@ -104,10 +101,10 @@ IndexSets join_faces(const TriangleSoup& soup, const Context& context) {
   IndexSets sets(int64_t(soup.triangles.size()));
   std::vector<uint8_t> is_alone(3 * soup.triangles.size(), 0);
   bool have_borders = false;
-  int64_t step = 0;
+  CancelWatch watch(context, "regions");
   for_each_edge(find_edge_sides(soup.triangles, soup.vertices.size()),
                 [&](uint32_t u, uint32_t v, View<const EdgeSide> at_edge) {
-                  if (step++ % kEdgesBetweenLooks == 0) check_cancel(context, "regions");
+                  watch.check();
                   join_at(soup.vertices, soup.triangles, u, v, at_edge, sets);
                   if (at_edge.size > 1) return;
                   is_alone[at_edge[0].half_edge] = 1;
@@ -138,13 +135,8 @@ std::vector<std::string> common_names(const Attribute& groups, const Parts& part
 Parts find_components(const TriangleSoup& soup, const Context& context) {
   IndexSets sets = join_faces(soup, context);
   Parts parts;
-  std::vector<uint32_t> number(soup.triangles.size(), kNone);
   uint32_t count = 0;
-  for (uint32_t f = 0; f < soup.triangles.size(); ++f) {
-    uint32_t& part = number[sets.root(f)];
-    if (part == kNone) part = count++;
-    parts.of_face.push_back(part);
-  }
+  parts.of_face = sets.numbers(count);
   parts.name.resize(count);
   const Attribute* const groups = find_groups(soup);
   if (groups && !groups->labels.empty()) parts.name = common_names(*groups, parts, count);

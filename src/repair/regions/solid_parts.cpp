@@ -51,17 +51,10 @@ class PartFinder {
     for_each_edge(edges, [&](uint32_t, uint32_t, View<const EdgeSide> sides) {
       for (int64_t i = 1; i < sides.size; ++i) sets.unite(sides[0].half_edge / 3, sides[i].half_edge / 3);
     });
-    std::vector<uint32_t> number(face_.size());
-    part_.resize(face_.size());
-    for (uint32_t f = 0; f < face_.size(); ++f) {
-      const uint32_t root = sets.root(f);
-      if (root == f) {
-        number[f] = uint32_t(parts_.size());
-        parts_.emplace_back();
-      }
-      part_[f] = number[root];
-      parts_[part_[f]].triangles.push_back(triangle_[f]);
-    }
+    uint32_t count = 0;
+    part_ = sets.numbers(count);
+    parts_.resize(count);
+    for (size_t f = 0; f < face_.size(); ++f) parts_[part_[f]].triangles.push_back(triangle_[f]);
     for_each_edge(edges, [&](uint32_t, uint32_t, View<const EdgeSide> sides) {
       PartShape& shape = parts_[part_[sides[0].half_edge / 3]].shape;
       const auto start = [&](int64_t i) { return face_[sides[i].half_edge / 3][sides[i].half_edge % 3]; };
