@@ -116,7 +116,7 @@ def read(out: str) -> Manifest:
     return Manifest(rows, runs, damaged)
 
 
-def library() -> Tuple[Any, Any]:
+def parquet_library() -> Tuple[Any, Any]:
     """pyarrow, and its module of Parquet.
 
     Raises:
@@ -131,7 +131,7 @@ def compact(manifest: Manifest, path: str) -> None:
     Raises:
         Error: of code UNWRITABLE_OUTPUT.
     """
-    pyarrow, parquet = library()
+    pyarrow, parquet = parquet_library()
     flat = [{**_as_text(row), "options": json.dumps(row["options"], sort_keys=True), "gates": json.dumps(row["gates"])}
             for _, row in sorted(manifest.rows.items())]
     names = list(dict.fromkeys(name for row in flat for name in row))

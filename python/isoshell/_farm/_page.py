@@ -43,7 +43,7 @@ def report(out: str, output: Optional[str], parquet: Optional[str]) -> int:
     page_there = [("--output", target)] if output or os.path.isdir(out) else []
     _isoshell.check_output_files([*page_there, ("--parquet", parquet or "")], [], True)
     if parquet:
-        manifest.library()
+        manifest.parquet_library()
     found = read_farm(out)
     text = page(found, out, os.path.dirname(os.path.abspath(target)))
     _isoshell.write_text(target, text.encode("utf-8", "backslashreplace").decode(), True)

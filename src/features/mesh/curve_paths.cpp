@@ -11,6 +11,10 @@
 namespace isoshell {
 namespace {
 
+constexpr double kWindow = 4;        ///< edge lengths, within which a jagged path turns back
+constexpr double kLeastTurn = 0.35;  ///< an edge length: a circle of three edge lengths turns as much
+constexpr double kMostLeft = 0.5;    ///< of all turns, once those of a window are summed
+
 /// How many edges a curve has.
 std::vector<uint64_t> edges_of(const CurveNetwork& network, size_t vertices) {
   std::vector<uint64_t> edges;
@@ -79,10 +83,6 @@ void find_least_segments(const std::vector<char>& turns, std::vector<CurvePath>&
       path.least_segments = 2;  // a slit with two ends has two sides between the same corners
   }
 }
-
-constexpr double kWindow = 4;        ///< edge lengths
-constexpr double kLeastTurn = 0.35;  ///< an edge length: a circle of three edge lengths turns as much
-constexpr double kMostLeft = 0.5;    ///< of all turns, once those of a window are summed
 
 /// Along the axis, as long as the distance between the two directions.
 WorldPoint turn_chord(const WorldPoint& before, const WorldPoint& after) {

@@ -20,7 +20,8 @@
 namespace isoshell {
 namespace {
 
-/// Six to eight passes where the surface moves little. Every pass undoes some of what was repaired beside curves.
+/// Ends after six to eight passes where the surface moves little: every pass undoes some of what was repaired beside
+/// curves.
 constexpr int32_t kWarmTolerancePpb = 2000000;
 
 /// Of the corners of a triangle that are off curves the one whose part of a place is the largest; kNone where all are
