@@ -33,7 +33,7 @@ class CudaBackend final : public BackendTable {
                              Context&) const override;
   void attach_to_sheet(const SurfaceMesh&, SeedSet&, int, Context&) const override;
   VoronoiLabels flood_shell(const Shell&, const SeedSet&, Context&) const override;
-  DualMesh triangulate_dual(const SurfaceMesh&, SeedSet&, const DualOptions&, DualReport&, Context&) const override;
+  Triangulation triangulate_dual(const SurfaceMesh&, SeedSet&&, const DualOptions&, Context&) const override;
   SeedSet subdivide_seeds(const SurfaceMesh&, const DualMesh&, const SeedSet&, int64_t, Context&) const override;
   OptimizeReport optimize_mesh(const SurfaceMesh&, const OptimizeOptions&, SeedSet&, DualMesh&,
                                Context&) const override;

@@ -8,10 +8,10 @@
 
 namespace isoshell {
 
-DualMesh CudaBackend::triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options,
-                                       DualReport& report, Context& context) const {
+Triangulation CudaBackend::triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, const DualOptions& options,
+                                            Context& context) const {
   CudaExecutor exec(context, "dual");
-  return triangulate_dual_body(exec, *OnDevice<SurfaceMesh>(exec, surface), on_device(exec, seeds), options, report);
+  return triangulate_dual_body(exec, *OnDevice<SurfaceMesh>(exec, surface), std::move(on_device(exec, seeds)), options);
 }
 
 }  // namespace isoshell

@@ -42,7 +42,7 @@ class BackendTable {
                                      Context&) const = 0;
   virtual void attach_to_sheet(const SurfaceMesh&, SeedSet&, int, Context&) const = 0;
   virtual VoronoiLabels flood_shell(const Shell&, const SeedSet&, Context&) const = 0;
-  virtual DualMesh triangulate_dual(const SurfaceMesh&, SeedSet&, const DualOptions&, DualReport&, Context&) const = 0;
+  virtual Triangulation triangulate_dual(const SurfaceMesh&, SeedSet&&, const DualOptions&, Context&) const = 0;
   virtual SeedSet subdivide_seeds(const SurfaceMesh&, const DualMesh&, const SeedSet&, int64_t, Context&) const = 0;
   virtual OptimizeReport optimize_mesh(const SurfaceMesh&, const OptimizeOptions&, SeedSet&, DualMesh&,
                                        Context&) const = 0;

@@ -150,13 +150,19 @@ TEST_CASE("kernels: relaxed seeds, duals and improved meshes are those of the pl
       CHECK(report.energy == relax_on_sheet_body(exec, *sheet, plain_seeds, {8, 0, 0}).energy);
       CHECK(hash_arrays(seeds) == hash_arrays(plain_seeds));
 
-      DualReport dual_report, plain_report;
-      DualMesh mesh = triangulate_dual(*sheet, seeds, {}, dual_report, context);
-      DualMesh plain_mesh = triangulate_dual_body(exec, *sheet, plain_seeds, {}, plain_report);
-      REQUIRE(dual_report.failed_cells == 0);
-      CHECK(dual_report.repair_rounds == plain_report.repair_rounds);
-      CHECK(hash_arrays(mesh) == hash_arrays(plain_mesh));
-      split += dual_report.inserted_seeds;
+      DualOptions keep_cells;
+      keep_cells.keep_cells = true;
+      Triangulation dual = isoshell::triangulate_dual(*sheet, std::move(seeds), keep_cells, context);
+      Triangulation plain = triangulate_dual_body(exec, *sheet, std::move(plain_seeds), keep_cells);
+      REQUIRE(dual.report.failed_cells == 0);
+      CHECK(dual.report.repair_rounds == plain.report.repair_rounds);
+      CHECK(hash_arrays(dual.mesh) == hash_arrays(plain.mesh));
+      const Buffer<uint32_t> cell = dual.cell.to_host();
+      CHECK(std::equal(cell.begin(), cell.end(), plain.cell.begin(), plain.cell.end()));
+      split += dual.report.inserted_seeds;
+      DualMesh &mesh = dual.mesh, &plain_mesh = plain.mesh;
+      seeds = std::move(dual.seeds);
+      plain_seeds = std::move(plain.seeds);
 
       flips += optimize_mesh(*sheet, {}, seeds, mesh, context).flips;
       optimize_mesh_body(exec, *sheet, {}, plain_seeds, plain_mesh);

@@ -190,8 +190,10 @@ struct DualReport {
 struct DualOptions {
   int32_t max_repair_rounds = 64;     ///< 0 only checks
   int64_t most_against_crossing = 0;  ///< seeds put in where triangles of the dual intersect; 0: not looked for
+  bool keep_cells = false;            ///< fills Triangulation::cell
 };
 struct Triangulation : SeededMesh {
+  Buffer<uint32_t> cell;  ///< per vertex of the surface the seed whose cell it is in; only where asked for
   DualReport report;
 };
 /// DualTriangulation(V_k) on the surface: a triangle whose vertices carry three labels is a face. Four checks

@@ -7,11 +7,11 @@
 
 namespace isoshell {
 
-DualMesh CpuBackend::triangulate_dual(const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options,
-                                      DualReport& report, Context& context) const {
+Triangulation CpuBackend::triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, const DualOptions& options,
+                                           Context& context) const {
   CpuExecutor exec(context, "dual");
   return run_with_threads(
-      context, [&] { return triangulate_dual_body(exec, *OnHost(surface), on_host(seeds), options, report); });
+      context, [&] { return triangulate_dual_body(exec, *OnHost(surface), std::move(on_host(seeds)), options); });
 }
 
 }  // namespace isoshell

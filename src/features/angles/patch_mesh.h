@@ -36,6 +36,8 @@ class PatchMesh : public EditableMesh {
   /// Of such a mesh, of many triangles; vertices without triangles are none of it.
   PatchMesh(std::shared_ptr<const CutLookup> lookup, EditableMesh mesh, const JoinOptions& options);
 
+  const CutLookup& lookup() const { return *lookup_; }
+  const std::shared_ptr<const CutLookup>& shared_lookup() const { return lookup_; }
   /// Triangles with an angle below 30 degrees, the worst first.
   std::vector<uint32_t> poor_triangles() const;
   /// For each of the triangles the change of what is around it that leaves the least cost, where one leaves less.

@@ -9,9 +9,9 @@ namespace isoshell {
 /// collapsed there and vertices moved, also along the curves, where that makes the worst angles wider and the triangles
 /// follow surface and curves no worse. As many edges are collapsed or split elsewhere, where triangles stay good, until
 /// there are as many vertices as asked for, or as near to that as it goes. Curves stay edges, the topology stays, and
-/// no triangles come to intersect. Result: the same for every number of threads. In host memory. Cost: about a
+/// no triangles come to intersect. The same for every number of threads. In host memory. Cost: about a
 /// millisecond a poor triangle, for no more of them than options allow.
-JoinedPatches widened(PatchMesh mesh, const Context& context);
+void widen(PatchMesh& mesh, const Context& context);
 
 /// The same of patches that are put together first.
 JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,

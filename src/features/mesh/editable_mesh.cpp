@@ -15,11 +15,6 @@ bool is_in(const std::vector<uint32_t>& list, uint32_t v) {
   return std::find(list.begin(), list.end(), v) != list.end();
 }
 
-std::array<uint32_t, 3> ascending(std::array<uint32_t, 3> corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
-
 }  // namespace
 
 double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
@@ -59,7 +54,7 @@ void EditableMesh::list_neighbours(uint32_t v, std::vector<uint32_t>& out) const
 void EditableMesh::list_targets(uint32_t v, std::vector<uint32_t>& out) const {
   if (vertices_[v].kind == RegionVertex::Kind::free) return list_neighbours(v, out);
   out.clear();
-  if (vertices_[v].is_kept || vertices_[v].kind == RegionVertex::Kind::corner) return;
+  if (vertices_[v].kind == RegionVertex::Kind::corner) return;
   for_each_around(v, [&](uint32_t t) {
     for (size_t i = 0; i < 3; ++i) {
       const uint32_t a = triangles_[t].corner[i], b = triangles_[t].corner[(i + 1) % 3];
@@ -83,36 +78,10 @@ CornersOfTriangle EditableMesh::corners(const RegionTriangle& t) const {
 }
 
 void EditableMesh::keep_apart(double cell_q8) {
-  if (guard_) return;
-  guard_ = std::make_shared<Guard>(Guard{TriangleSpace(cell_q8, triangles_.size()), {}, {}, {}});
+  if (space_) return;
+  space_ = std::make_shared<TriangleSpace>(cell_q8, triangles_.size());
   for (uint32_t t = 0; t < triangles_.size(); ++t)
-    if (!triangles_[t].is_gone()) guard_->space.put(t, corners(triangles_[t]));
-}
-
-void EditableMesh::avoid_twins_of(const std::vector<RegionTriangle>& others) {
-  const auto is_here = [&](uint32_t v) { return v < vertices_.size(); };
-  for (const RegionTriangle& t : others) {
-    if (std::all_of(t.corner.begin(), t.corner.end(), is_here)) guard_->twins.push_back(ascending(t.corner));
-    for (size_t i = 0; i < 3; ++i) {
-      const uint32_t u = t.corner[i], v = t.corner[(i + 1) % 3];
-      if (is_here(u) && is_here(v)) guard_->edges.push_back({edge_key(u, v), t.curve[i]});
-    }
-  }
-  std::sort(guard_->twins.begin(), guard_->twins.end());
-  std::sort(guard_->edges.begin(), guard_->edges.end());
-}
-
-void EditableMesh::avoid(double cell_q8, const std::vector<CornersOfTriangle>& others) {
-  guard_->others.emplace(cell_q8, others.size());
-  for (uint32_t i = 0; i < others.size(); ++i) guard_->others->put(i, others[i]);
-}
-
-/// Whether an edge on a curve, or off all, would be that of others at another place.
-bool EditableMesh::is_of_others(uint32_t u, uint32_t v, uint32_t curve) const {
-  if (!guard_ || guard_->edges.empty()) return false;
-  const Edges& edges = guard_->edges;
-  const auto found = std::lower_bound(edges.begin(), edges.end(), std::make_pair(edge_key(u, v), uint32_t(0)));
-  return found != edges.end() && found->first == edge_key(u, v) && (curve == kNone || found->second != curve);
+    if (!triangles_[t].is_gone()) space_->put(t, corners(triangles_[t]));
 }
 
 /// Of a and b at the ends, c and d opposite.
@@ -143,12 +112,7 @@ bool EditableMesh::may_meet_neighbours(uint32_t gone, uint32_t into, MeshChange&
   list_neighbours(gone, change.here);
   list_neighbours(into, change.there);
   size_t both = 0, sides = 0;
-  for (const uint32_t v : change.here) {
-    const bool is_there = is_in(change.there, v);
-    both += is_there ? 1 : 0;
-    if (is_there || v == into || !guard_ || guard_->edges.empty()) continue;
-    if (is_of_others(into, v, *curve_between(gone, v))) return false;
-  }
+  for (const uint32_t v : change.here) both += is_in(change.there, v) ? 1 : 0;
   for_each_side(gone, into, [&](const Side&) { ++sides; });
   const bool are_tetrahedra =
       change.here.size() == both + 1 && change.there.size() == both + 1;  // faces would be there twice
@@ -158,8 +122,7 @@ bool EditableMesh::may_meet_neighbours(uint32_t gone, uint32_t into, MeshChange&
 /// No two edges on curves become one.
 bool EditableMesh::list_collapse(uint32_t gone, uint32_t into, MeshChange& change) const {
   const RegionVertex& from = vertices_[gone];
-  if (from.kind == RegionVertex::Kind::corner || from.is_kept || !from.is_inner || !vertices_[into].is_inner)
-    return false;
+  if (from.kind == RegionVertex::Kind::corner || !from.is_inner || !vertices_[into].is_inner) return false;
   if (from.kind == RegionVertex::Kind::on_curve && curve_between(gone, into).value_or(kNone) == kNone) return false;
   if (!may_meet_neighbours(gone, into, change)) return false;
   change.clear();
@@ -184,7 +147,6 @@ bool EditableMesh::list_collapse(uint32_t gone, uint32_t into, MeshChange& chang
 
 bool EditableMesh::list_split(uint32_t u, uint32_t v, MeshChange& change) const {
   if (!vertices_[u].is_inner && !vertices_[v].is_inner) return false;
-  if (vertices_[u].is_kept && vertices_[v].is_kept && curve_between(u, v) != kNone) return false;
   const auto middle = uint32_t(vertices_.size());
   change.clear();
   for_each_side(u, v, [&](const Side& s) {
@@ -209,15 +171,10 @@ void EditableMesh::list_around(uint32_t v, MeshChange& change) const {
 }
 
 bool EditableMesh::are_free(MeshChange& change) const {
-  if (!guard_) return true;
+  if (!space_) return true;
   change.corners.clear();
   for (const RegionTriangle& t : change.made) change.corners.push_back(corners(t));
-  const auto is_twin = [&](const RegionTriangle& t) {
-    return std::binary_search(guard_->twins.begin(), guard_->twins.end(), ascending(t.corner));
-  };
-  return std::none_of(change.made.begin(), change.made.end(), is_twin) &&
-         guard_->space.are_free(change.corners, change.replaced) &&
-         (!guard_->others || guard_->others->are_free(change.corners, {}));
+  return space_->are_free(change.corners, change.replaced);
 }
 
 bool EditableMesh::commit(MeshChange& change) {
@@ -239,7 +196,7 @@ bool EditableMesh::commit(MeshChange& change) {
 
 void EditableMesh::replace(uint32_t triangle, const RegionTriangle& by) {
   RegionTriangle& t = triangles_[triangle];
-  if (guard_ && !t.is_gone()) guard_->space.take(triangle);
+  if (space_ && !t.is_gone()) space_->take(triangle);
   if (!around_.empty() && t.corner != by.corner) {
     for (size_t i = 0; i < 3 && !t.is_gone(); ++i) {
       std::vector<uint32_t>& around = around_[t.corner[i]];
@@ -252,7 +209,7 @@ void EditableMesh::replace(uint32_t triangle, const RegionTriangle& by) {
     }
   }
   t = by;
-  if (guard_ && !t.is_gone()) guard_->space.put(triangle, corners(t));
+  if (space_ && !t.is_gone()) space_->put(triangle, corners(t));
 }
 
 }  // namespace isoshell

@@ -20,7 +20,7 @@ struct RegionVertex {
   enum class Kind : uint8_t { corner, on_curve, free };
   Kind kind = Kind::free;
   bool is_inner = true;     ///< all its triangles are in the mesh
-  bool is_kept = false;     ///< see EditableMesh::keep
+  bool is_settled = false;  ///< relaxed: it is where it is to be, and is evened out no more
   WorldPoint position;      ///< whole steps of 1/256 voxel
   uint32_t home = 0;        ///< vertex of the surface; off the free ones a copy of their place
   uint32_t curve = 0;       ///< that a vertex is on, of CutSurface::curves
@@ -61,7 +61,7 @@ struct MeshChange {
 double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c);
 
 /// Edges have two triangles or, on curves, any number. A change keeps the topology of every region, the patches, the
-/// curves, and what is kept; no edge and no triangle comes to be there twice, and with `keep_apart` no triangle comes
+/// curves; no edge and no triangle comes to be there twice, and with `keep_apart` no triangle comes
 /// to meet another one outside of corners that they share. Which of these changes are made is up to the caller: allow()
 /// is asked once it is known what a change makes, and before all that is costly. A change that is not made leaves the
 /// mesh as it was. Vertices and triangles keep their numbers; those that are gone have no triangles, and one corner
@@ -92,8 +92,6 @@ class EditableMesh {
     }
     for (const uint32_t t : around_[v]) visit(t);
   }
-  /// The vertex stays where it is from now on, and so do edges on curves between two that stay.
-  void keep(uint32_t v) { vertices_[v].is_kept = true; }
   /// The first triangle around a vertex that is so; kNone where none is. is(t) says no to those that do not have it.
   template <class Is>
   uint32_t find_around(uint32_t v, Is is) const {
@@ -126,22 +124,19 @@ class EditableMesh {
   /// From now on no triangle comes to meet another one, as far as that is not so already. They are in cells of that
   /// size.
   void keep_apart(double cell_q8);
-  /// No change makes one of these triangles from now on, nor an edge of theirs but where it is on the same curve. Their
-  /// corners are vertices, or numbers that no vertex has. After keep_apart, as the next ones.
-  void avoid_twins_of(const std::vector<RegionTriangle>& others);
-  /// No change lets a triangle come to meet one of these from now on.
-  void avoid(double cell_q8, const std::vector<CornersOfTriangle>& others);
-  /// Calls use(i) for each of those to avoid that a triangle meets.
+  /// Calls use(number) for each other triangle that one meets outside of corners that they share. After keep_apart.
   template <class Use>
-  void for_each_met(const RegionTriangle& t, Use use) const {
-    guard_->others->for_each_met(corners(t), use);
+  void for_each_met(uint32_t triangle, Use use) const {
+    space_->for_each_met(corners(triangles_[triangle]), [&](uint32_t other) {
+      if (other != triangle) use(other);
+    });
   }
 
   /// Puts the other diagonal into two triangles of one patch. Whether the change was made, here and below.
   template <class Allow>
   bool flip(uint32_t triangle, size_t edge, MeshChange& change, Allow allow) {
     return list_flip(triangle, edge, change) && allow() &&
-           may_join(change.made[1].corner[1], change.made[1].corner[2]) && commit(change);
+           !is_edge(change.made[1].corner[1], change.made[1].corner[2]) && commit(change);
   }
   /// Takes a vertex into another one, along their edge: a free one, or one on a curve along that.
   template <class Allow>
@@ -161,7 +156,7 @@ class EditableMesh {
   template <class Allow>
   bool move(uint32_t v, const RegionVertex& to, MeshChange& change, Allow allow) {
     const RegionVertex before = vertices_[v];
-    if (before.is_kept || before.kind == RegionVertex::Kind::corner) return false;
+    if (before.kind == RegionVertex::Kind::corner) return false;
     list_around(v, change);
     place(v, to);
     if (allow() && commit(change)) return true;
@@ -195,14 +190,6 @@ class EditableMesh {
   bool commit(MeshChange& change);
 
  private:
-  using Edges = std::vector<std::pair<uint64_t, uint32_t>>;  ///< keys, and what they are on
-  /// What no change may come to meet, or to be.
-  struct Guard {
-    TriangleSpace space;
-    std::optional<TriangleSpace> others;         ///< that are to be avoided
-    std::vector<std::array<uint32_t, 3>> twins;  ///< corners of triangles that are not to be made, all ascending
-    Edges edges;                                 ///< of these, ascending
-  };
   /// By several threads at once.
   struct Count {
     std::atomic<int64_t> value{0};
@@ -217,15 +204,13 @@ class EditableMesh {
   bool list_split(uint32_t u, uint32_t v, MeshChange& change) const;
   void list_around(uint32_t v, MeshChange& change) const;
   bool may_meet_neighbours(uint32_t gone, uint32_t into, MeshChange& change) const;
-  bool is_of_others(uint32_t u, uint32_t v, uint32_t curve) const;
-  bool may_join(uint32_t u, uint32_t v) const { return !is_edge(u, v) && !is_of_others(u, v, kNone); }
   bool are_free(MeshChange& change) const;
   void replace(uint32_t triangle, const RegionTriangle& by);
 
   std::vector<RegionVertex> vertices_;
   std::vector<RegionTriangle> triangles_;
   std::vector<std::vector<uint32_t>> around_;  ///< per vertex its triangles; empty: there are few
-  std::shared_ptr<Guard> guard_;               ///< once triangles are kept apart; copies are made before
+  std::shared_ptr<TriangleSpace> space_;       ///< once triangles are kept apart; copies are made before
   Count count_;
 };
 

@@ -16,8 +16,10 @@ namespace {
 constexpr double kErrorWeight = 2;  ///< of the squared distance from the walls, beside that of a squared edge
 constexpr double kMostNarrow = 30;  ///< sum of the squared edges of a triangle over twice its area
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kCheap = 0.75;       ///< of the last collapses' cost: what costs less goes anyhow
-constexpr int64_t kManyVertices = 2;  ///< for one that is to stay: cheap ones go in all blocks at once
+constexpr double kCheap = 0.75;                    ///< squares of edges of the result: what costs less goes anyhow
+constexpr double kMostSquares[] = {2, 8, kNever};  ///< that a collapse may cost, one after the other
+constexpr double kShortSquare = 0.25;              ///< of an edge of the result: shorter ones are collapsed further
+constexpr int64_t kManyVertices = 2;               ///< for one that is to stay: cheap ones go in all blocks at once
 constexpr int64_t kStepsBetweenLooks = 1024;
 
 /// The mean of squared distances from planes, weighted by areas.
@@ -50,9 +52,9 @@ struct Known {
 /// Of some vertices: those of a block, or all.
 class Coarsening {
  public:
-  Coarsening(WallMesh& mesh, Known& known, WallMesh::Shapes shapes, const WallBlocks* blocks = nullptr,
-             size_t block = 0)
-      : mesh_(mesh), known_(known), shapes_(shapes), blocks_(blocks), block_(block) {}
+  Coarsening(WallMesh& mesh, Known& known, WallMesh::Shapes shapes, double short_sq_q8,
+             const WallBlocks* blocks = nullptr, size_t block = 0)
+      : mesh_(mesh), known_(known), shapes_(shapes), short_sq_q8_(short_sq_q8), blocks_(blocks), block_(block) {}
 
   void add(uint32_t v) {
     if (!is_here(v)) return;
@@ -78,7 +80,9 @@ class Coarsening {
     bool operator<(const Entry& o) const { return cost != o.cost ? cost > o.cost : vertex > o.vertex; }
   };
 
-  bool is_here(uint32_t v) const { return !blocks_ || blocks_->holds_around(block_, v); }
+  bool is_here(uint32_t v) const {
+    return !blocks_ || (!mesh_.vertex(v).is_settled && blocks_->holds_around(block_, v));
+  }
 
   /// Of taking a vertex into another one: the longest edge that comes of it, squared, more where triangles are narrow.
   double cost(uint32_t gone, uint32_t into) const {
@@ -119,8 +123,9 @@ class Coarsening {
     list_ways(v);
     if (ways_.empty()) return;
     if (ways_[0].first > expected) return push(v, ways_[0].first);
-    const auto way = std::find_if(ways_.begin(), ways_.end(),
-                                  [&](const auto& w) { return mesh_.collapse(v, w.second, scratch_, shapes_); });
+    const auto way = std::find_if(ways_.begin(), ways_.end(), [&](const auto& w) {
+      return mesh_.collapse(v, w.second, scratch_, shapes_, short_sq_q8_);
+    });
     if (way == ways_.end()) return;  // until something around it changes
     const uint32_t into = way->second;
     known_.quadric[into].add(known_.quadric[v]);
@@ -133,6 +138,7 @@ class Coarsening {
   WallMesh& mesh_;
   Known& known_;
   const WallMesh::Shapes shapes_;
+  const double short_sq_q8_;
   const WallBlocks* blocks_;  ///< null: everything is here
   size_t block_;
   std::priority_queue<Entry> queue_;
@@ -164,15 +170,14 @@ double square_of_edges(const WallMesh& mesh, int64_t vertices) {
 }
 
 /// Collapses what costs far less than the last collapses will, in all blocks at once.
-void coarsen_in_blocks(WallMesh& mesh, int64_t vertices, Known& known, const Context& context) {
-  const double most_cost = kCheap * square_of_edges(mesh, vertices);
+void coarsen_in_blocks(WallMesh& mesh, int64_t vertices, double square, Known& known, const Context& context) {
   const double side_q8 = side_of_blocks_q8(mesh, vertices);
   for (const bool is_shifted : {false, true}) {
     const WallBlocks blocks(mesh, side_q8, is_shifted);
     for_each_index(size_t(0), blocks.size(), [&](size_t b) {
-      Coarsening here(mesh, known, WallMesh::Shapes::good, &blocks, b);
+      Coarsening here(mesh, known, WallMesh::Shapes::good, kShortSquare * square, &blocks, b);
       for (const uint32_t v : blocks.vertices_of(b)) here.add(v);
-      here.run(0, most_cost, context);
+      here.run(0, kCheap * square, context);
       for (const uint32_t v : blocks.vertices_of(b)) known.least[v] = kNever;
     });
   }
@@ -183,14 +188,18 @@ void coarsen_in_blocks(WallMesh& mesh, int64_t vertices, Known& known, const Con
 void coarsen(WallMesh& mesh, int64_t vertices, const Context& context) {
   if (mesh.vertex_count() <= vertices) return;
   Known known = known_of(mesh);
-  if (mesh.vertex_count() > kManyVertices * vertices) coarsen_in_blocks(mesh, vertices, known, context);
-  for (const auto shapes : {WallMesh::Shapes::good, WallMesh::Shapes::any}) {  // the count goes before shapes
-    std::fill(known.least.begin(), known.least.end(), kNever);
-    Coarsening all(mesh, known, shapes);
-    for (uint32_t v = 0; v < mesh.vertices().size(); ++v) all.add(v);
-    all.run(vertices, kNever, context);
-    if (mesh.vertex_count() <= vertices) return;
-  }
+  const double square = square_of_edges(mesh, vertices);
+  if (mesh.vertex_count() > kManyVertices * vertices) coarsen_in_blocks(mesh, vertices, square, known, context);
+  // Long edges are collapsed last, and not instead of short ones whose triangles would be bad; the count goes before
+  // shapes.
+  for (const double squares : kMostSquares)
+    for (const auto shapes : {WallMesh::Shapes::good, WallMesh::Shapes::any}) {
+      std::fill(known.least.begin(), known.least.end(), kNever);
+      Coarsening all(mesh, known, shapes, kShortSquare * square);
+      for (uint32_t v = 0; v < mesh.vertices().size(); ++v) all.add(v);
+      all.run(vertices, squares * square, context);
+      if (mesh.vertex_count() <= vertices) return;
+    }
 }
 
 }  // namespace isoshell

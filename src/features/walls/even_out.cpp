@@ -96,12 +96,13 @@ void in_blocks(WallMesh& mesh, double side_q8, bool is_shifted, const Context& c
   });
 }
 
-/// The longest first, in terms of the length aimed at.
+/// The longest first, in terms of the length aimed at, but those between settled vertices.
 std::vector<uint64_t> long_edges(const WallMesh& mesh) {
   std::vector<std::pair<double, uint64_t>> edges;
   for (const RegionTriangle& t : mesh.triangles())
     for (size_t i = 0; i < 3 && !t.is_gone(); ++i) {
       const auto [u, v] = std::minmax(t.corner[i], t.corner[(i + 1) % 3]);
+      if (mesh.vertex(u).is_settled && mesh.vertex(v).is_settled) continue;
       const double aimed_at = mesh.aimed_at(u) + mesh.aimed_at(v);
       edges.push_back({-std::sqrt(distance_sq(mesh.at(u), mesh.at(v))) / aimed_at, uint64_t(u) << 32 | v});
     }
@@ -124,10 +125,12 @@ bool split_edge(WallMesh& mesh, uint32_t u, uint32_t v, MeshChange& scratch) {
   if (mesh.vertex(u).kind != kind) return false;
   const RegionVertex& from = mesh.vertex(u);
   const CutLookup& places = mesh.lookup();
-  const std::optional<RegionVertex> middle = kind == Kind::free
-                                                 ? places.on_surface_near(from, 0.5 * (mesh.at(u) + mesh.at(v)))
-                                                 : places.along(from, places.way_between(from, mesh.vertex(v)) / 2);
-  return middle && mesh.split(u, v, *middle, scratch);
+  std::optional<RegionVertex> middle = kind == Kind::free
+                                           ? places.on_surface_near(from, 0.5 * (mesh.at(u) + mesh.at(v)))
+                                           : places.along(from, places.way_between(from, mesh.vertex(v)) / 2);
+  if (!middle) return false;
+  middle->is_settled = false;
+  return mesh.split(u, v, *middle, scratch);
 }
 
 void split_long_edges(WallMesh& mesh, int64_t most) {

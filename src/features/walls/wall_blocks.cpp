@@ -31,7 +31,7 @@ WallBlocks::WallBlocks(const WallMesh& mesh, double side_q8, bool is_shifted)
       first_.push_back(vertices_.size());
     }
     block_of_[v] = uint32_t(keys_.size() - 1);
-    vertices_.push_back(v);
+    if (!mesh.vertex(v).is_settled) vertices_.push_back(v);
   }
   first_.push_back(vertices_.size());
 }

@@ -8,8 +8,8 @@
 
 namespace isoshell {
 
-/// Cubes, each with the vertices in it. What is changed around vertices of one, and stays in it, meets nothing that is
-/// changed in another one. The same for every number of threads.
+/// Cubes, each with the vertices in it that are not settled. What is changed around vertices of one, and stays in it,
+/// meets nothing that is changed in another one. The same for every number of threads.
 class WallBlocks {
  public:
   /// From vertices in the middle of each cube of blocks that are not shifted to those of the next. Cost: a sort of the
@@ -31,7 +31,7 @@ class WallBlocks {
   double side_q8_, shift_q8_;
   std::vector<uint64_t> keys_;      ///< per block, of its place
   std::vector<size_t> first_;       ///< per block its first vertex in vertices_, and their end
-  std::vector<uint32_t> vertices_;  ///< block by block, ascending
+  std::vector<uint32_t> vertices_;  ///< block by block, ascending; settled ones are missing
   std::vector<uint32_t> block_of_;  ///< per vertex
 };
 

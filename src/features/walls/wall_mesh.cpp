@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
-#include "geometry/half_edges.h"
+#include "features/mesh/curve_edges.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {
 namespace {
 
 using Kind = RegionVertex::Kind;
-using Edges = std::vector<std::pair<uint64_t, uint32_t>>;  ///< keys, and the curves that they are on
 
 constexpr double kFollows = 0.9;  ///< cosine between a triangle's normal and the surface's at its corners
 constexpr double kCostOfTurn = 4;
@@ -22,10 +22,14 @@ constexpr double kLeastSine = 0.17;  ///< of the angles of a triangle that a cha
 
 /// Between the edges that there are, on average, and those that there will be: a triangle meets few cells of that size,
 /// and few triangles meet a cell.
-double cell_between(const FineMesh& fine, const MeshTriangles& triangles, double edge_q8) {
-  double sum = 0;
-  for (const auto& t : triangles) sum += length(fine.position[t[1]] - fine.position[t[0]]);
-  return std::sqrt(sum / double(triangles.size()) * edge_q8);
+double cell_between(const EditableMesh& mesh, double edge_q8) {
+  double sum = 0, count = 0;
+  for (const RegionTriangle& t : mesh.triangles()) {
+    if (t.is_gone()) continue;
+    sum += length(mesh.at(t.corner[1]) - mesh.at(t.corner[0]));
+    ++count;
+  }
+  return std::sqrt(sum / std::max(count, 1.) * edge_q8);
 }
 
 std::vector<RegionVertex> vertices_of(const CutLookup& lookup, size_t count) {
@@ -43,23 +47,11 @@ std::vector<RegionVertex> vertices_of(const CutLookup& lookup, size_t count) {
   return vertices;
 }
 
-/// Those of a mesh with so many vertices; ascending.
-Edges edges_on_curves(const std::vector<CurvePath>& paths, size_t vertices) {
-  Edges edges;
-  for (uint32_t c = 0; c < paths.size(); ++c) {
-    std::vector<uint32_t> along;
-    for (const uint32_t v : paths[c].vertex)
-      if (v < vertices) along.push_back(v);
-    for (size_t i = 1; i < along.size(); ++i) edges.push_back({edge_key(along[i - 1], along[i]), c});
-    if (paths[c].is_loop) edges.push_back({edge_key(along.back(), along.front()), c});
-  }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
 std::vector<RegionTriangle> triangles_of(const CutLookup& lookup, const WallTriangles& walls) {
   const CutSurface& cut = lookup.cut();
-  const Edges on_curve = edges_on_curves(cut.fine->paths, walls.vertices);
+  std::vector<uint32_t> becomes(cut.fine->position.size(), kNone);
+  std::iota(becomes.begin(), becomes.begin() + int64_t(walls.vertices), 0u);
+  const CurveEdges edges = curve_edges(cut.fine->paths, becomes);
   const std::vector<uint32_t>& source = cut.fine->source_face;
   std::vector<uint32_t> patch_of_face(size_t(*std::max_element(source.begin(), source.end())) + 1);
   for (size_t t = 0; t < source.size(); ++t) patch_of_face[source[t]] = lookup.patch(cut.corner[3 * t]);
@@ -67,11 +59,7 @@ std::vector<RegionTriangle> triangles_of(const CutLookup& lookup, const WallTria
   for (size_t t = 0; t < out.size(); ++t) {
     out[t].corner = walls.triangles[t];
     out[t].patch = patch_of_face[walls.source_face[t]];
-    for (size_t i = 0; i < 3; ++i) {
-      const uint64_t key = edge_key(out[t].corner[i], out[t].corner[(i + 1) % 3]);
-      const auto found = std::lower_bound(on_curve.begin(), on_curve.end(), std::make_pair(key, uint32_t(0)));
-      out[t].curve[i] = found != on_curve.end() && found->first == key ? found->second : kNone;
-    }
+    for (size_t i = 0; i < 3; ++i) out[t].curve[i] = curve_of(edges, out[t].corner[i], out[t].corner[(i + 1) % 3]);
   }
   return out;
 }
@@ -79,13 +67,15 @@ std::vector<RegionTriangle> triangles_of(const CutLookup& lookup, const WallTria
 }  // namespace
 
 WallMesh::WallMesh(const CutSurface& cut, const WallTriangles& walls)
-    : WallMesh(std::make_shared<CutLookup>(cut), walls) {
-  keep_apart(cell_between(*cut.fine, walls.triangles, cut.longest_edge_q8));
-}
+    : WallMesh(std::make_shared<CutLookup>(cut), walls) {}
 
 WallMesh::WallMesh(std::shared_ptr<const CutLookup> lookup, const WallTriangles& walls)
-    : EditableMesh(vertices_of(*lookup, walls.vertices), triangles_of(*lookup, walls), Size::many),
-      lookup_(std::move(lookup)) {}
+    : WallMesh(lookup, EditableMesh(vertices_of(*lookup, walls.vertices), triangles_of(*lookup, walls), Size::many)) {}
+
+WallMesh::WallMesh(std::shared_ptr<const CutLookup> lookup, EditableMesh mesh)
+    : EditableMesh(std::move(mesh)), lookup_(std::move(lookup)) {
+  keep_apart(cell_between(*this, lookup_->cut().longest_edge_q8));
+}
 
 double WallMesh::aimed_at(uint32_t v) const {
   return lookup_->cut().is_requested ? lookup_->edge_length(vertex(v).home) : 1;
@@ -115,13 +105,15 @@ double WallMesh::irregularity(uint32_t v, uint32_t patch, int more) const {
   return off * off;
 }
 
-/// Whether a triangle that replaces another one lies about as that does, and is no needle.
-bool WallMesh::may_replace(const RegionTriangle& made, const RegionTriangle& before) const {
+/// Whether a triangle that replaces another one lies about as that does, and is no needle, or a short one.
+bool WallMesh::may_replace(const RegionTriangle& made, const RegionTriangle& before, double short_sq_q8) const {
   const WorldPoint n = normal(made), m = normal(before);
   if (!(length_sq(n) > 0)) return false;
   if (length_sq(m) > 0 && dot(n, m) < kLeastTurn * length(n) * length(m)) return false;
   const double narrow = sine(made);
-  return narrow >= kLeastSine || narrow >= sine(before);
+  if (narrow >= kLeastSine || narrow >= sine(before)) return true;
+  const auto& [a, b, c] = made.corner;
+  return std::max({distance_sq(at(a), at(b)), distance_sq(at(b), at(c)), distance_sq(at(c), at(a))}) < short_sq_q8;
 }
 
 /// Whether a triangle looks where the surface does, and is no needle.
@@ -129,11 +121,11 @@ bool WallMesh::is_sound(const RegionTriangle& t) const {
   return lookup_->cosine(*this, t) > 0 && sine(t) >= kLeastSine;
 }
 
-bool WallMesh::collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes shapes) {
+bool WallMesh::collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes shapes, double short_sq_q8) {
   return EditableMesh::collapse(gone, into, change, [&] {
     for (size_t i = 0; i < change.made.size(); ++i) {
       const RegionTriangle& made = change.made[i];
-      if (shapes == Shapes::good ? !may_replace(made, triangles()[change.number[i]])
+      if (shapes == Shapes::good ? !may_replace(made, triangles()[change.number[i]], short_sq_q8)
                                  : !(lookup_->cosine(*this, made) > 0))
         return false;
     }
@@ -144,7 +136,7 @@ bool WallMesh::collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes
 bool WallMesh::split(uint32_t u, uint32_t v, const RegionVertex& middle, MeshChange& change) {
   return EditableMesh::split(u, v, middle, change, [&] {
     for (size_t i = 0; i < change.made.size(); ++i)
-      if (!may_replace(change.made[i], triangles()[change.replaced[i / 2]])) return false;
+      if (!may_replace(change.made[i], triangles()[change.replaced[i / 2]], 0)) return false;
     return true;
   });
 }

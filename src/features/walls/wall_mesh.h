@@ -28,6 +28,8 @@ class WallMesh : public EditableMesh {
  public:
   /// The fine mesh and `cut` must outlive it. Cost: O(fine triangles), and a sort of the edges of curves.
   WallMesh(const CutSurface& cut, const WallTriangles& walls);
+  /// Of such a mesh, of many triangles, whose vertices are on the surface. Cost: O(triangles).
+  WallMesh(std::shared_ptr<const CutLookup> lookup, EditableMesh mesh);
 
   const CutLookup& lookup() const { return *lookup_; }
   std::shared_ptr<const CutLookup> shared_lookup() const { return lookup_; }
@@ -37,7 +39,8 @@ class WallMesh : public EditableMesh {
   /// What triangles a collapse may make: no worse ones than said above, or any on the side of the surface that they
   /// were on.
   enum class Shapes { good, any };
-  bool collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes shapes = Shapes::good);
+  /// `short_sq_q8`: triangles whose squared edges are shorter go on being collapsed, and may be needles.
+  bool collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes shapes = Shapes::good, double short_sq_q8 = 0);
   bool split(uint32_t u, uint32_t v, const RegionVertex& middle, MeshChange& change);
   /// `cost_of_valence`: of the square by which the triangles of a vertex are more or fewer than those of a regular
   /// mesh, which lets flips pass where they cost a little.
@@ -52,7 +55,7 @@ class WallMesh : public EditableMesh {
   double cost_around(uint32_t v) const;
   double irregularity(uint32_t v, uint32_t patch, int more) const;
   bool is_sound(const RegionTriangle& t) const;
-  bool may_replace(const RegionTriangle& made, const RegionTriangle& before) const;
+  bool may_replace(const RegionTriangle& made, const RegionTriangle& before, double short_sq_q8) const;
 
   std::shared_ptr<const CutLookup> lookup_;
 };

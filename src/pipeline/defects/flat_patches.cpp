@@ -152,7 +152,6 @@ std::vector<char> triangulate_flat(const CutSurface& cut, const std::vector<char
     if (!is_done[cut.surface.patch[made.seeds.home[t.a]]]) triangles.push_back(t);
   made.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
   std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
-  made = gather_patches(cut, {{made, vertices_in(cut, std::vector<char>(is_chosen.size(), 1))}});
   return is_done;
 }
 

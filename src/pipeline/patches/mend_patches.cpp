@@ -2,15 +2,20 @@
 #include "pipeline/patches/mend_patches.h"
 
 #include <algorithm>
-#include <cstddef>
+#include <utility>
 
+#include "core/copy_product.h"
 #include "core/watched.h"
 #include "features/angles/widen_angles.h"
+#include "features/cutting/cut_piece.h"
 #include "features/mesh/feature_mesh.h"
-#include "features/walls/coarsen_patches.h"
-#include "features/walls/coarsen_walls.h"
+#include "features/walls/coarsen.h"
+#include "features/walls/even_out.h"
+#include "features/walls/fine_cells.h"
+#include "features/walls/mesh_faults.h"
 #include "isoshell/readable.h"
 #include "pipeline/defects/inverted_regions.h"
+#include "pipeline/defects/patch_defects.h"
 #include "pipeline/grid/memory_estimate.h"
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/new_crossings.h"
@@ -18,99 +23,151 @@
 namespace isoshell {
 namespace {
 
-constexpr size_t kMostCoarse = 2;              ///< one fine triangle in so many is in a coarse patch, at most
-constexpr size_t kTrianglesPerCrossing = 256;  ///< fine ones; where more of them meet, parts lie on each other
-
-/// Those around regions that are inside out.
-std::vector<uint32_t> inverted_patches(const CutSurface& cut, const JoinedPatches& joined) {
-  const std::vector<uint32_t>& patch = joined.features.patch;
-  std::vector<uint32_t> inverted;
-  if (!cut.regions) return inverted;
-  std::vector<char> is_inverted(size_t(joined.mesh.position.size()), 0);
-  for (const uint32_t v : find_inverted_regions(cut, joined.mesh, patch)) is_inverted[v] = 1;
-  for (size_t t = 0; t < patch.size(); ++t) {
-    const TriangleIndices& i = joined.mesh.triangles[int64_t(t)];
-    if (is_inverted[i.a] && is_inverted[i.b] && is_inverted[i.c]) inverted.push_back(patch[t]);
-  }
-  return inverted;
-}
-
-size_t count_triangles(const CutSurface& cut, const std::vector<char>& is_coarse) {
-  size_t count = 0;
-  for (size_t t = 0; t < cut.fine->triangles.size(); ++t)
-    count += is_coarse[cut.surface.patch[cut.corner[3 * t]]] ? 1 : 0;
-  return count;
-}
-
-/// Whether the fine triangles of a surface meet nearly nowhere, on the lattice.
-bool is_nearly_embedded(const CutSurface& cut, const NewCrossings& crossings) {
-  DualMesh fine;
-  fine.position = Buffer<PointQ8>(int64_t(cut.fine->position.size()));
-  fine.triangles = Buffer<TriangleIndices>(int64_t(cut.fine->triangles.size()));
-  std::transform(cut.fine->position.begin(), cut.fine->position.end(), fine.position.begin(), rounded);
-  std::transform(cut.fine->triangles.begin(), cut.fine->triangles.end(), fine.triangles.begin(), [](const auto& t) {
-    return TriangleIndices{t[0], t[1], t[2]};
-  });
-  return kTrianglesPerCrossing * crossings.all(fine, {}).size() <= cut.fine->triangles.size();
-}
+constexpr const char* kTooManyOnCurves = "curves take too many vertices for their edges to be as long as others";
+constexpr const char* kWouldIntersect = "triangles would intersect";
 
 bool memory_allows(const CutSurface& cut, const Context& context) {
   const double bytes = kBytesPerFinePoint * double(cut.fine->position.size());
   return context.memory_limit_bytes <= 0 || bytes <= double(context.memory_limit_bytes);
 }
 
-void warn_of_coarse(const WrongPatches& wrong, RemeshReport& report) {
-  report.warnings.push_back(
-      "in " + std::to_string(std::count(wrong.is_wrong.begin(), wrong.is_wrong.end(), 1)) + " of " +
-      counted(int64_t(wrong.is_wrong.size()), "patch", "patches") +
-      " edges were collapsed and flipped, not relaxed, and triangles are less even: " + wrong.what);
+std::string words_of_coarse(int64_t cells, int64_t all, const std::string& why) {
+  return "around " + std::to_string(cells) + " of " + counted(all, "vertex", "vertices") +
+         " edges were collapsed and flipped, not relaxed, and triangles are less even: " + why;
+}
+
+/// Finds what keeps a mesh from being valid.
+class FaultFinder {
+ public:
+  FaultFinder(const PreparedSurface& p, const CutSurface& cut, Context& context)
+      : cut_(cut), crossings_(p, cut, context) {}
+
+  /// The seeds of vertices at which a mesh with fine cells has faults; ascending.
+  std::vector<uint32_t> seeds_of(const FineCells::Mesh& made) {
+    const DualMesh mesh = dual_of(made.mesh);
+    std::vector<uint32_t> vertices = find_mesh_faults(made.mesh);
+    for (const auto& pair : crossings_.wrong_of(mesh, pairs_with_seeds(made)))
+      for (const uint32_t t : pair) {
+        const TriangleIndices& i = mesh.triangles[t];
+        vertices.insert(vertices.end(), {i.a, i.b, i.c});
+      }
+    if (cut_.regions) {
+      std::vector<uint32_t> patch;
+      for (const RegionTriangle& t : made.mesh.triangles()) patch.push_back(t.patch);
+      const std::vector<uint32_t> inverted = find_inverted_regions(cut_, mesh, patch);
+      vertices.insert(vertices.end(), inverted.begin(), inverted.end());
+    }
+    std::vector<uint32_t> seeds;
+    for (const uint32_t v : vertices)
+      if (made.seed[v] != kNone) seeds.push_back(made.seed[v]);
+    std::sort(seeds.begin(), seeds.end());
+    seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
+    return seeds;
+  }
+
+  bool is_valid(const JoinedPatches& joined, OptimizeReport& report) {
+    const TrianglePairs pairs = crossings_.all(joined.mesh, {});
+    report.self_intersections = int64_t(pairs.size());
+    return crossings_.wrong_of(joined.mesh, pairs).empty() &&
+           (!cut_.regions || find_inverted_regions(cut_, joined.mesh, joined.features.patch).empty());
+  }
+
+ private:
+  /// The pairs of triangles that meet, one of which has a seed at a corner; ascending.
+  static TrianglePairs pairs_with_seeds(const FineCells::Mesh& made) {
+    const std::vector<RegionTriangle>& triangles = made.mesh.triangles();
+    const auto is_fine = [&](const RegionTriangle& t) {
+      return std::all_of(t.corner.begin(), t.corner.end(), [&](uint32_t v) { return made.seed[v] == kNone; });
+    };
+    TrianglePairs pairs;
+    for (uint32_t t = 0; t < triangles.size(); ++t)
+      if (!is_fine(triangles[t]))
+        made.mesh.for_each_met(t, [&](uint32_t other) { pairs.push_back({std::min(t, other), std::max(t, other)}); });
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+  }
+
+  static DualMesh dual_of(const WallMesh& mesh) {
+    DualMesh out;
+    out.position = Buffer<PointQ8>(int64_t(mesh.vertices().size()));
+    for (uint32_t v = 0; v < mesh.vertices().size(); ++v) out.position[v] = rounded_down(mesh.at(v));
+    out.triangles = Buffer<TriangleIndices>(int64_t(mesh.triangles().size()));
+    for (size_t t = 0; t < mesh.triangles().size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles()[t].corner;
+      out.triangles[int64_t(t)] = {a, b, c};
+    }
+    return out;
+  }
+
+  const CutSurface& cut_;
+  NewCrossings crossings_;
+};
+
+bool misses_count(int64_t vertices, const JoinOptions& options) {
+  return vertices > options.vertices && !CountReport{options.vertices, vertices, {}}.is_near();
+}
+
+/// With as many vertices as asked for, as far as the guard allows it. Where angles were widened by vertices on curves
+/// that are too many, the count goes before angles.
+JoinedPatches simplified(WallMesh mesh, const JoinOptions& options, const Context& context) {
+  auto lookup = mesh.shared_lookup();
+  run_with_threads(context, [&] {
+    coarsen(mesh, options.vertices, context);
+    even_out(mesh, options.vertices, context);
+  });
+  PatchMesh patches(lookup, std::move(mesh), options);
+  widen(patches, context);
+  if (!misses_count(patches.vertex_count(), options)) return patches.joined();
+  WallMesh again(lookup, std::move(patches));
+  run_with_threads(context, [&] { coarsen(again, options.vertices, context); });
+  return PatchMesh(lookup, std::move(again), options).joined();
+}
+
+/// The mesh in which as many cells are fine as it takes.
+WallMesh with_fine_cells(FineCells& cells, FaultFinder& faults, Context& context) {
+  for (;;) {
+    check_cancel(context, "features");
+    FineCells::Mesh made = run_with_threads(context, [&] { return cells.mesh(); });
+    const std::vector<uint32_t> seeds = faults.seeds_of(made);
+    if (seeds.empty()) return std::move(made.mesh);
+    cells.add(seeds);
+  }
 }
 
 }  // namespace
 
-std::optional<JoinedPatches> mend_patches(const CutSurface& cut, const SeededMesh& made, std::vector<char>& is_wrong,
-                                          const JoinOptions& options, Context& context) {
-  const size_t triangles = cut.fine->triangles.size();
-  const PatchMesh relaxed = run_with_threads(context, [&] { return PatchMesh(cut, made, options); });
-  for (size_t work = 0;;) {
-    check_cancel(context, "features");
-    const size_t coarse = count_triangles(cut, is_wrong);
-    work += coarse;
-    if (kMostCoarse * coarse > triangles || work > triangles) return {};
-    std::optional<PatchMesh> mended = coarsen_patches(cut, relaxed, is_wrong, options, context);
-    if (!mended) continue;  // more patches are to be coarse
-    const std::vector<uint32_t> more = inverted_patches(cut, mended->joined());
-    if (more.empty()) return widened(std::move(*mended), context);
-    if (std::all_of(more.begin(), more.end(), [&](uint32_t patch) { return is_wrong[patch]; })) return {};
-    for (const uint32_t patch : more) is_wrong[patch] = 1;
-  }
+std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed_seeds,
+                                          const PatchOptions& in_patches, RemeshReport& report, Context& context) {
+  if (!memory_allows(cut, context)) return {};
+  MendedPatches out;
+  const MeshWithCells with_cells = mesh_with_cells(p, cut, relaxed_seeds, in_patches, report, out.optimize, context);
+  return timed(report, "coarsen", context, [&]() -> std::optional<MendedPatches> {
+    const JoinOptions options = join_options(in_patches);
+    const SeededMesh& made = with_cells.made;
+    const PatchMesh relaxed = run_with_threads(context, [&] { return PatchMesh(cut, made, options); });
+    FineCells cells(cut, made, relaxed, with_cells.dual, with_cells.cell, with_cells.is_optimized);
+    std::vector<uint32_t> seeds;
+    for (const uint32_t v : with_cells.faults.vertices) seeds.push_back(cells.seed_of(v));
+    cells.add(seeds);
+    FaultFinder faults(p, cut, context);
+    out.joined = simplified(with_fine_cells(cells, faults, context), options, context);
+    std::string why = with_cells.faults.what.empty() ? kWouldIntersect : with_cells.faults.what;
+    if (!cells.are_all() && misses_count(out.joined.mesh.position.size(), options)) {
+      cells.add_all();
+      out.joined = simplified(cells.mesh().mesh, options, context);
+      why = kTooManyOnCurves;
+    }
+    if (!faults.is_valid(out.joined, out.optimize)) return {};
+    if (cells.count() > 0) out.warning = words_of_coarse(cells.count(), int64_t(relaxed.vertices().size()), why);
+    return std::move(out);
+  });
 }
 
-std::optional<JoinedPatches> simplify_instead(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made,
-                                              WrongPatches wrong, const PatchOptions& in_patches, RemeshReport& report,
-                                              Context& context) {
-  return timed(report, "coarsen", context, [&]() -> std::optional<JoinedPatches> {
-    if (!memory_allows(cut, context)) return {};
-    NewCrossings crossings(p, cut, context);
-    const JoinOptions options = join_options(in_patches);
-    const auto is_mesh = [&](const std::optional<JoinedPatches>& joined) {
-      if (!joined || !CountReport{options.vertices, joined->mesh.position.size(), {}}.is_near()) return false;
-      const TrianglePairs pairs = crossings.all(joined->mesh, {});
-      report.optimize.self_intersections = int64_t(pairs.size());
-      return crossings.wrong_of(joined->mesh, pairs).empty();
-    };
-    std::optional<JoinedPatches> joined;
-    if (std::find(wrong.is_wrong.begin(), wrong.is_wrong.end(), 1) != wrong.is_wrong.end())
-      joined = mend_patches(cut, made, wrong.is_wrong, options, context);
-    if (!is_mesh(joined)) {
-      if (!is_nearly_embedded(cut, crossings)) return {};
-      joined = widened(coarsen_walls(cut, all_triangles_of(cut), options, context), context);
-      std::fill(wrong.is_wrong.begin(), wrong.is_wrong.end(), char(1));
-      if (!is_mesh(joined)) return {};
-    }
-    warn_of_coarse(wrong, report);
-    return joined;
-  });
+JoinedPatches accepted(MendedPatches mended, RemeshReport& report) {
+  report.optimize = mended.optimize;
+  if (!mended.warning.empty()) report.warnings.push_back(std::move(mended.warning));
+  return std::move(mended.joined);
 }
 
 }  // namespace isoshell

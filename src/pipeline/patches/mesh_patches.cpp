@@ -2,26 +2,20 @@
 #include "pipeline/patches/mesh_patches.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
+#include "core/copy_product.h"
 #include "features/cutting/cut_piece.h"
-#include "pipeline/defects/fan_patches.h"
 #include "pipeline/defects/flat_patches.h"
 #include "pipeline/defects/inverted_regions.h"
-#include "pipeline/defects/part_twins.h"
 #include "pipeline/defects/patch_defects.h"
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/new_crossings.h"
 #include "pipeline/sheet/dual_of_seeds.h"
-#include "pipeline/sheet/resolve_intersections.h"
 #include "pipeline/sheet/warm_start.h"
 
 namespace isoshell {
 namespace {
-
-constexpr int64_t kFewTriangles = 800;
-constexpr int64_t kMostCrossing = 40;  ///< one pair of triangles in so many: where more intersect the surface does, too
 
 using PerPatch = std::vector<char>;
 
@@ -33,193 +27,177 @@ PerPatch inverse(const PerPatch& flags) {
 bool any(const PerPatch& flags) {
   return std::any_of(flags.begin(), flags.end(), [](char flag) { return flag; });
 }
-bool all(const PerPatch& flags) { return !any(inverse(flags)); }
 
-PerPatch none_of(const CutSurface& cut) { return PerPatch(patch_count(cut), 0); }
+uint32_t patch_of(const CutSurface& cut, const SeededMesh& made, uint32_t vertex) {
+  return cut.surface.patch[made.seeds.home[vertex]];
+}
 
-/// What keeps a mesh from being the run's.
-struct Wrong {
-  PerPatch patch;
-  std::vector<int64_t> defects;  ///< per patch, vertices around which triangles are no surface
-  int64_t crossing = 0;          ///< pairs of triangles that intersect
+/// Runs work on the mesh of some patches alone; the mesh of the others stays.
+template <class Work>
+void on_patches(const CutSurface& cut, const PerPatch& chosen, SeededMesh& made, Context& context, Work work) {
+  if (!any(inverse(chosen))) return work(cut, made);
+  if (!any(chosen)) return;
+  const SeededMesh whole = std::move(made);
+  const CutPiece piece = piece_of(cut, chosen, context);
+  SeededMesh part = gather_patches(piece.cut, {{whole, in_piece(piece, cut)}});
+  work(piece.cut, part);
+  bring_to_host(part);
+  made = gather_patches(cut, {{whole, vertices_in(cut, inverse(chosen))}, {part, piece.in_whole}});
+}
 
-  explicit Wrong(const CutSurface& cut) : patch(none_of(cut)), defects(patch.size(), 0) {}
-  void forget(const PerPatch& repaired) {
-    for (size_t p = 0; p < patch.size(); ++p)
-      if (repaired[p]) patch[p] = 0, defects[p] = 0;
-  }
-  bool is_nowhere() const { return !any(patch); }
-  std::string words() const {
-    if (crossing > 0) return std::to_string(crossing) + " pairs of triangles would intersect";
-    return std::to_string(std::accumulate(defects.begin(), defects.end(), int64_t(0))) +
-           " cells beside them are no disks";
-  }
-};
+/// Result: whether all cells are disks.
+bool make_dual(const CutSurface& cut, SeededMesh& made, RemeshReport& report, Context& context) {
+  RemeshReport here;
+  make_dual_of_seeds(cut.surface, {made.seeds.size()}, made, here, context);
+  for (const StageTime& t : here.times) book_time(report, t.stage.c_str(), t.ms);
+  report.dual.inserted_seeds += here.dual.inserted_seeds;
+  report.dual.relabelled_vertices += here.dual.relabelled_vertices;
+  report.dual.repair_rounds += here.dual.repair_rounds;
+  return here.dual.failed_cells == 0;
+}
 
-class PatchMesher {
- public:
-  PatchMesher(const PreparedSurface& p, const CutSurface& cut, const PatchOptions& options, RemeshReport& report,
-              Context& context)
-      : options_(options), report_(report), context_(context), crossings_(p, cut, context) {}
+void optimize(const CutSurface& cut, SeededMesh& made, const PatchOptions& options, RemeshReport& report,
+              OptimizeReport& sum, Context& context) {
+  OptimizedMesh optimized = timed(report, "post", context, [&] {
+    return optimize_mesh(cut.surface, std::move(made),
+                         options.previous ? for_warm_frame(options.optimize) : options.optimize, context);
+  });
+  sum.flips += optimized.report.flips;
+  sum.undone_vertices += optimized.report.undone_vertices;
+  made = std::move(optimized);
+}
 
-  WrongPatches mesh(const CutSurface& cut, SeededMesh& made) {
-    report_.dual = {};
-    report_.optimize = {};
-    const Wrong wrong = triangulate_flat_where_wrong(cut, made, mesh_relaxed(cut, made));
-    return {wrong.patch, wrong.is_nowhere() ? "" : wrong.words()};
-  }
+/// Patches in which the dual is a mesh.
+PerPatch patches_to_optimize(const CutSurface& cut, SeededMesh& made, bool are_disks) {
+  PerPatch chosen(patch_count(cut), 1);
+  if (are_disks && !cut.regions) return chosen;
+  bring_to_host(made);
+  for (const uint32_t v : find_patch_defects(made)) chosen[patch_of(cut, made, v)] = 0;
+  return chosen;
+}
 
- private:
-  OptimizeOptions optimize_options() const {
-    return options_.previous ? for_warm_frame(options_.optimize) : options_.optimize;
-  }
-
-  /// Runs work on the mesh of some patches alone; the mesh of the others stays, or goes.
-  template <class Work>
-  void on_patches(const CutSurface& cut, const PerPatch& chosen, bool keeps_others, SeededMesh& made, Work work) {
-    if (all(chosen)) return work(cut, made);
-    bring_to_host(made);
-    const SeededMesh whole = std::move(made);
-    const PerPatch others = keeps_others ? inverse(chosen) : none_of(cut);
-    const std::vector<uint32_t> kept = vertices_in(cut, others);
-    if (!any(chosen)) {
-      made = gather_patches(cut, {{whole, kept}});
-      return;
+void add_corners(const DualMesh& mesh, const TrianglePairs& pairs, std::vector<uint32_t>& vertices) {
+  for (const auto& pair : pairs)
+    for (const uint32_t t : pair) {
+      const TriangleIndices& i = mesh.triangles[t];
+      vertices.insert(vertices.end(), {i.a, i.b, i.c});
     }
-    const CutPiece piece = piece_of(cut, chosen, context_);
-    SeededMesh part = gather_patches(piece.cut, {{whole, in_piece(piece, cut)}});
-    work(piece.cut, part);
-    bring_to_host(part);
-    made = gather_patches(cut, {{whole, kept}, {part, piece.in_whole}});
-  }
+}
 
-  /// Dual and optimisation of relaxed seeds. Result: the patches that fail, which then have no triangles.
-  Wrong mesh_relaxed(const CutSurface& cut, SeededMesh& made) {
-    Wrong failed(cut);
-    const bool are_disks = make_dual(cut, made);
-    if (cut.regions) {
-      bring_to_host(made);
-      part_twins(cut, made);
-    }
-    if (!are_disks || cut.regions) {
-      bring_to_host(made);
-      add_defects(cut, made, find_patch_defects(made), failed);
-      const PerPatch is_flat = triangulate_flat(cut, failed.patch, made);
-      failed.forget(is_flat);
-      if (cut.regions && any(is_flat)) add_new_defects(cut, made, failed);
-    }
-    int64_t crossing = 0;
-    on_patches(cut, inverse(failed.patch), false, made, [&](const CutSurface& part, SeededMesh& mesh) {
-      OptimizedMesh optimized = timed(report_, "post", context_, [&] {
-        return optimize_mesh(part.surface, std::move(mesh), optimize_options(), context_);
-      });
-      crossing = optimized.report.self_intersections;
-      report_.optimize.flips += optimized.report.flips;
-      report_.optimize.undone_vertices += optimized.report.undone_vertices;
-      mesh = std::move(optimized);
-    });
-    if (crossing > 0) untangle(cut, made);
-    return failed;
-  }
-
-  /// Of so many vertices the whole mesh has twice as many triangles.
-  bool is_hopeless(const Wrong& wrong) const {
-    return kMostCrossing * wrong.crossing > std::max(2 * options_.seeds.count, kFewTriangles);
-  }
-
-  /// Result: whether all cells are disks.
-  bool make_dual(const CutSurface& cut, SeededMesh& made) {
-    RemeshReport here;
-    make_dual_of_seeds(cut.surface, {made.seeds.size()}, made, here, context_);
-    for (const StageTime& t : here.times) book_time(report_, t.stage.c_str(), t.ms);
-    report_.dual.inserted_seeds += here.dual.inserted_seeds;
-    report_.dual.relabelled_vertices += here.dual.relabelled_vertices;
-    report_.dual.repair_rounds += here.dual.repair_rounds;
-    return here.dual.failed_cells == 0;
-  }
-
-  static void add_defects(const CutSurface& cut, const SeededMesh& made, const std::vector<uint32_t>& vertices,
-                          Wrong& wrong) {
-    for (const uint32_t v : vertices) {
-      const uint32_t patch = cut.surface.patch[made.seeds.home[v]];
-      wrong.patch[patch] = 1;
-      ++wrong.defects[patch];
-    }
-  }
-
-  /// Beside the patches that are known to be wrong.
-  static void add_new_defects(const CutSurface& cut, const SeededMesh& made, Wrong& wrong) {
-    std::vector<uint32_t> defects = find_patch_defects(made);
-    const auto is_known = [&](uint32_t v) { return wrong.patch[cut.surface.patch[made.seeds.home[v]]]; };
-    defects.erase(std::remove_if(defects.begin(), defects.end(), is_known), defects.end());
-    add_defects(cut, made, defects, wrong);
-  }
-
-  static std::vector<uint32_t> patches_of(const CutSurface& cut, const SeededMesh& made) {
+PatchFaults find_faults(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made, OptimizeReport& report,
+                        Context& context) {
+  PatchFaults faults{find_patch_defects(made), ""};
+  if (!faults.vertices.empty())
+    faults.what = std::to_string(faults.vertices.size()) + " cells beside them are no disks";
+  NewCrossings crossings(p, cut, context);
+  const TrianglePairs all = crossings.all(made.mesh, made.seeds.fixed.joined.view());
+  const TrianglePairs wrong = crossings.wrong_of(made.mesh, all);
+  report.self_intersections = int64_t(all.size());
+  if (!wrong.empty()) faults.what = std::to_string(wrong.size()) + " pairs of triangles would intersect";
+  add_corners(made.mesh, wrong, faults.vertices);
+  if (cut.regions) {
     std::vector<uint32_t> patch;
-    for (const TriangleIndices& t : made.mesh.triangles) patch.push_back(cut.surface.patch[made.seeds.home[t.a]]);
-    return patch;
+    for (const TriangleIndices& t : made.mesh.triangles) patch.push_back(patch_of(cut, made, t.a));
+    const std::vector<uint32_t> inverted = find_inverted_regions(cut, made.mesh, patch);
+    if (!inverted.empty() && faults.what.empty()) faults.what = "a region would be inside out";
+    faults.vertices.insert(faults.vertices.end(), inverted.begin(), inverted.end());
   }
+  std::sort(faults.vertices.begin(), faults.vertices.end());
+  faults.vertices.erase(std::unique(faults.vertices.begin(), faults.vertices.end()), faults.vertices.end());
+  return faults;
+}
 
-  TrianglePairs all_crossing(const SeededMesh& made) const {
-    return crossings_.all(made.mesh, made.seeds.fixed.joined.view());
+/// Optimises the chosen patches of a mesh, whose vertices keep their numbers.
+void optimize_in_place(const CutSurface& cut, const PerPatch& chosen, SeededMesh& made, const PatchOptions& options,
+                       RemeshReport& report, OptimizeReport& sum, Context& context) {
+  if (!any(inverse(chosen))) return optimize(cut, made, options, report, sum, context);
+  if (!any(chosen)) return;
+  const CutPiece piece = piece_of(cut, chosen, context);
+  SeededMesh part = gather_patches(piece.cut, {{made, in_piece(piece, cut)}});
+  std::vector<uint32_t> number;  // per vertex of the part its own in the whole
+  for (int64_t s = 0; s < part.seeds.fixed.count; ++s)
+    number.push_back(made.seeds.fixed.of_vertex[piece.in_whole[part.seeds.home[s]]]);
+  std::vector<char> is_used(size_t(made.seeds.size()), 0);
+  std::vector<TriangleIndices> triangles;
+  for (const TriangleIndices& t : made.mesh.triangles) {
+    if (!chosen[patch_of(cut, made, t.a)]) triangles.push_back(t);
+    is_used[t.a] = is_used[t.b] = is_used[t.c] = 1;
   }
-
-  void untangle(const CutSurface& cut, SeededMesh& made) {
-    bring_to_host(made);
-    Wrong wrong(cut);
-    add_crossing(cut, made, crossings_.wrong_of(made.mesh, all_crossing(made)), wrong);
-    if (wrong.is_nowhere() || is_hopeless(wrong)) return;
-    timed(report_, "untangle", context_, [&] {
-      on_patches(cut, wrong.patch, true, made, [&](const CutSurface& part, SeededMesh& mesh) {
-        RemeshReport here;
-        here.optimize.self_intersections = int64_t(all_crossing(mesh).size());
-        resolve_intersections(part.surface, optimize_options(), mesh, here, context_);
-        report_.seeds_against_intersections += here.seeds_against_intersections;
-      });
-    });
+  for (int64_t s = made.seeds.fixed.count; s < made.seeds.size(); ++s)
+    if (is_used[size_t(s)] && chosen[patch_of(cut, made, uint32_t(s))]) number.push_back(uint32_t(s));
+  optimize(piece.cut, part, options, report, sum, context);
+  bring_to_host(part);
+  for (size_t s = 0; s < number.size(); ++s) {
+    made.mesh.position[number[s]] = part.mesh.position[int64_t(s)];
+    made.seeds.position[number[s]] = part.seeds.position[int64_t(s)];
+    made.seeds.normal[number[s]] = part.seeds.normal[int64_t(s)];
+    made.seeds.home[number[s]] = piece.in_whole[part.seeds.home[int64_t(s)]];
   }
+  for (const TriangleIndices& t : part.mesh.triangles) triangles.push_back({number[t.a], number[t.b], number[t.c]});
+  made.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
+  std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
+}
 
-  static void add_crossing(const CutSurface& cut, const SeededMesh& made, const TrianglePairs& pairs, Wrong& wrong) {
-    wrong.crossing = int64_t(pairs.size());
-    for (const auto& pair : pairs)
-      for (const uint32_t t : pair) wrong.patch[cut.surface.patch[made.seeds.home[made.mesh.triangles[t].a]]] = 1;
-  }
+/// Triangulates patches with faults anew that lie in a plane. Result: these.
+PerPatch triangulate_flat_patches(const CutSurface& cut, const PatchFaults& faults, SeededMesh& made) {
+  PerPatch has_faults(patch_count(cut), 0);
+  for (const uint32_t v : faults.vertices) has_faults[patch_of(cut, made, v)] = 1;
+  return triangulate_flat(cut, has_faults, made);
+}
 
-  /// In the whole mesh, beside the patches that have failed.
-  Wrong find_wrong(const CutSurface& cut, SeededMesh& made, const Wrong& failed) {
-    bring_to_host(made);
-    Wrong wrong = failed;
-    add_new_defects(cut, made, wrong);
-    if (cut.regions) add_defects(cut, made, find_inverted_regions(cut, made.mesh, patches_of(cut, made)), wrong);
-    const auto pairs = all_crossing(made);
-    report_.optimize.self_intersections = int64_t(pairs.size());
-    add_crossing(cut, made, crossings_.wrong_of(made.mesh, pairs), wrong);
-    return wrong;
-  }
-
-  /// In the whole mesh, with flat patches of it triangulated where something is wrong.
-  Wrong triangulate_flat_where_wrong(const CutSurface& cut, SeededMesh& made, Wrong failed) {
-    const Wrong wrong = find_wrong(cut, made, failed);
-    if (wrong.is_nowhere()) return wrong;
-    failed.forget(triangulate_flat(cut, wrong.patch, made));
-    if (!cut.regions) return find_wrong(cut, made, failed);
-    const Wrong still = find_wrong(cut, made, failed);
-    failed.forget(triangulate_as_fans(cut, still.patch, made));
-    return find_wrong(cut, made, failed);
-  }
-
-  const PatchOptions& options_;
-  RemeshReport& report_;
-  Context& context_;
-  NewCrossings crossings_;
-};
+/// Takes free vertices out of a list that have no triangles as their patches were triangulated anew.
+void forget_unused(const CutSurface& cut, const SeededMesh& made, const PerPatch& is_flat, PatchFaults& faults) {
+  std::vector<char> is_used(size_t(made.seeds.size()), 0);
+  for (const TriangleIndices& t : made.mesh.triangles) is_used[t.a] = is_used[t.b] = is_used[t.c] = 1;
+  std::vector<uint32_t>& v = faults.vertices;
+  v.erase(
+      std::remove_if(v.begin(), v.end(), [&](uint32_t at) { return !is_used[at] && is_flat[patch_of(cut, made, at)]; }),
+      v.end());
+  if (v.empty()) faults.what.clear();
+}
 
 }  // namespace
 
-WrongPatches mesh_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made,
-                          const PatchOptions& options, RemeshReport& report, Context& context) {
-  return PatchMesher(p, cut, options, report, context).mesh(cut, made);
+PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made, const PatchOptions& options,
+                         RemeshReport& report, Context& context) {
+  report.dual = {};
+  report.optimize = {};
+  const bool are_disks = make_dual(cut, made, report, context);
+  on_patches(cut, patches_to_optimize(cut, made, are_disks), made, context,
+             [&](const CutSurface& part, SeededMesh& mesh) {
+               optimize(part, mesh, options, report, report.optimize, context);
+             });
+  bring_to_host(made);
+  const PatchFaults faults = find_faults(p, cut, made, report.optimize, context);
+  if (faults.what.empty()) return faults;
+  triangulate_flat_patches(cut, faults, made);
+  made = gather_patches(cut, {{made, vertices_in(cut, PerPatch(patch_count(cut), 1))}});
+  return find_faults(p, cut, made, report.optimize, context);
+}
+
+MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed,
+                              const PatchOptions& options, RemeshReport& report, OptimizeReport& optimized,
+                              Context& context) {
+  DualOptions keep_cells;
+  keep_cells.keep_cells = true;
+  Triangulation dual = timed(report, "dual", context,
+                             [&] { return triangulate_dual(cut.surface, host_copy(relaxed), keep_cells, context); });
+  bring_to_host(dual);
+  MeshWithCells out;
+  out.dual.assign(dual.mesh.triangles.begin(), dual.mesh.triangles.end());
+  const Buffer<uint32_t> cell = dual.cell.to_host();
+  out.cell.assign(cell.begin(), cell.end());
+  const bool are_disks = dual.report.failed_cells == 0;
+  out.made = std::move(dual);
+  out.is_optimized = patches_to_optimize(cut, out.made, are_disks);
+  optimize_in_place(cut, out.is_optimized, out.made, options, report, optimized, context);
+  bring_to_host(out.made);
+  out.faults = find_faults(p, cut, out.made, optimized, context);
+  const PerPatch is_flat = triangulate_flat_patches(cut, out.faults, out.made);
+  if (!any(is_flat)) return out;
+  out.faults = find_faults(p, cut, out.made, optimized, context);
+  forget_unused(cut, out.made, is_flat, out.faults);
+  return out;
 }
 
 }  // namespace isoshell

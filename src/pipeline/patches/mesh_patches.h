@@ -8,16 +8,30 @@
 
 namespace isoshell {
 
-/// The patches of a mesh that are wrong, and what is.
-struct WrongPatches {
-  std::vector<char> is_wrong;
-  std::string what;  ///< empty: nothing
+/// Where a mesh of relaxed seeds cannot be the run's.
+struct PatchFaults {
+  std::vector<uint32_t> vertices;  ///< of the mesh; ascending
+  std::string what;                ///< empty: there are none
 };
 
-/// Dual and optimisation of the relaxed seeds of `cut`, in place. Where triangles intersect, or cells are no disks,
-/// patches in a plane are triangulated, and between regions those as small as their edges. Result: the patches that are
-/// wrong in the end: those that fail have no triangles.
-WrongPatches mesh_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made,
-                          const PatchOptions& options, RemeshReport& report, Context& context);
+/// The mesh of relaxed seeds with the cells that its vertices are from.
+struct MeshWithCells {
+  SeededMesh made;
+  std::vector<TriangleIndices> dual;  ///< of the vertices, as their cells meet: before edges were flipped
+  std::vector<uint32_t> cell;         ///< per vertex of the surface the vertex whose cell it is in; kNone: of none
+  std::vector<char> is_optimized;     ///< per patch: one with cells that are no disks is not
+  PatchFaults faults;
+};
+
+/// Dual and optimisation of the relaxed seeds of `cut`, in place; patches with cells that are no disks are not
+/// optimised, and those with faults that lie in a plane are triangulated there. Result: the vertices whose cells are
+/// none, of triangles that intersect and must not, and of regions that are inside out.
+PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made, const PatchOptions& options,
+                         RemeshReport& report, Context& context);
+
+/// The same with cells, and with all vertices that the dual's repair put in. `report`: of times alone. In host memory.
+MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed,
+                              const PatchOptions& options, RemeshReport& report, OptimizeReport& optimize,
+                              Context& context);
 
 }  // namespace isoshell

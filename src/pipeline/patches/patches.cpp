@@ -160,37 +160,34 @@ struct MeshOfPatches {
 };
 
 /// Simplifies patches whose relaxed mesh has a tenth more vertices than are wanted, if that is possible.
-void meet_count(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made, WrongPatches none,
-                const PatchOptions& options, JoinedPatches& joined, RemeshReport& report, Context& context) {
+void meet_count(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed, const PatchOptions& options,
+                JoinedPatches& joined, RemeshReport& report, Context& context) {
   const int64_t wanted = join_options(options).vertices, vertices = joined.mesh.position.size();
   if (vertices <= wanted || CountReport{wanted, vertices, {}}.is_near()) return;
-  none.what = "curves take too many vertices for their edges to be as long as others";
-  const int64_t crossings = report.optimize.self_intersections;
-  std::optional<JoinedPatches> simplified;
+  std::optional<MendedPatches> simplified;
   failure_reason([&] {
-    simplified = simplify_instead(p, cut, made, std::move(none), options, report, context);
+    simplified = mend_patches(p, cut, relaxed, options, report, context);
     return std::string();
   });
-  if (simplified)
-    joined = std::move(*simplified);
-  else
-    report.optimize.self_intersections = crossings;
+  if (simplified && simplified->joined.mesh.position.size() < vertices)
+    joined = accepted(std::move(*simplified), report);
 }
 
 MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
                               const PatchOptions& options, RemeshReport& report, Context& context) {
   MeshOfPatches out;
   out.why_not = failure_reason([&]() -> std::string {
-    WrongPatches wrong = mesh_patches(p, *cut, made, options, report, context);
-    if (!wrong.what.empty() && options.previous) return wrong.what;
-    if (wrong.what.empty()) {
+    const SeedSet relaxed = host_copy(made.seeds);
+    const PatchFaults faults = mesh_patches(p, *cut, made, options, report, context);
+    if (!faults.what.empty() && options.previous) return faults.what;
+    if (faults.what.empty()) {
       out.joined =
           timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(options), context); });
-      if (!options.previous) meet_count(p, *cut, made, std::move(wrong), options, out.joined, report, context);
-    } else if (auto simplified = simplify_instead(p, *cut, made, wrong, options, report, context)) {
-      out.joined = std::move(*simplified);
+      if (!options.previous) meet_count(p, *cut, relaxed, options, out.joined, report, context);
+    } else if (auto mended = mend_patches(p, *cut, relaxed, options, report, context)) {
+      out.joined = accepted(std::move(*mended), report);
     } else {
-      return wrong.what;
+      return faults.what;
     }
     out.mesh = to_world(out.joined.mesh, p.surface.frame);
     out.mesh.features = std::move(out.joined.features);

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/copy_product.h"
 #include "features/angles/widen_angles.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/refine_mesh.h"
@@ -101,23 +102,20 @@ TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatc
   return mesh;
 }
 
-/// Of relaxed seeds, with the patches coarsened that are wrong. Result: why there is none.
+/// Of relaxed seeds, with cells simplified around faults. Result: why there is none.
 std::string join_relaxed(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
                          JoinedPatches& joined, RemeshReport& report, Context& context) {
   const CutSurface& cut = *p.cut;
   const JoinOptions options = join_options(in_patches);
-  WrongPatches wrong = mesh_patches(p, cut, made, in_patches, report, context);
-  if (wrong.what.empty()) {
+  const SeedSet relaxed = host_copy(made.seeds);
+  const PatchFaults faults = mesh_patches(p, cut, made, in_patches, report, context);
+  if (faults.what.empty()) {
     joined = timed(report, "angles", context, [&] { return join_and_widen(cut, made, options, context); });
     return has_inverted(cut, joined) ? "a region would be inside out" : "";
   }
-  std::optional<JoinedPatches> mended =
-      timed(report, "coarsen", context, [&] { return mend_patches(cut, made, wrong.is_wrong, options, context); });
-  if (!mended || has_inverted(cut, *mended) || has_crossing(p, *mended, context)) return wrong.what;
-  joined = std::move(*mended);
-  report.optimize.self_intersections = 0;
-  report.warnings.push_back("in " + std::to_string(std::count(wrong.is_wrong.begin(), wrong.is_wrong.end(), 1)) +
-                            " of " + std::to_string(wrong.is_wrong.size()) + " walls " + kCoarsened + wrong.what);
+  std::optional<MendedPatches> mended = mend_patches(p, cut, relaxed, in_patches, report, context);
+  if (!mended) return faults.what;
+  joined = accepted(std::move(*mended), report);
   return "";
 }
 

@@ -50,9 +50,4 @@ void resolve_intersections(const PreparedSurface& prepared, const OptimizeOption
   make_again(start.sheet, start.seeds, options, keep_ids, mesh, report, context);
 }
 
-void resolve_intersections(const SurfaceMesh& surface, const OptimizeOptions& options, SeededMesh& mesh,
-                           RemeshReport& report, Context& context) {
-  make_again(surface, mesh.seeds, options, false, mesh, report, context);
-}
-
 }  // namespace isoshell

@@ -12,8 +12,4 @@ namespace isoshell {
 void resolve_intersections(const PreparedSurface& prepared, const OptimizeOptions& options, bool keep_ids,
                            SeededMesh& mesh, RemeshReport& report, Context& context);
 
-/// The same on a surface as it is, of whose seeds some are fixed.
-void resolve_intersections(const SurfaceMesh& surface, const OptimizeOptions& options, SeededMesh& mesh,
-                           RemeshReport& report, Context& context);
-
 }  // namespace isoshell

@@ -19,10 +19,7 @@ Triangulation triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, cons
   if (options.max_repair_rounds < 0)
     throw Error(ErrorCode::usage, "dual",
                 "max_repair_rounds is " + std::to_string(options.max_repair_rounds) + "; it must be 0 or more");
-  Triangulation result;
-  result.mesh = backend_for(context).triangulate_dual(surface, seeds, options, result.report, context);
-  result.seeds = std::move(seeds);
-  return result;
+  return backend_for(context).triangulate_dual(surface, std::move(seeds), options, context);
 }
 
 }  // namespace isoshell

@@ -74,6 +74,7 @@ class Partition {
   }
 
   View<const uint32_t> label() const { return label_.view(); }
+  Buffer<uint32_t> take_labels() && { return std::move(label_); }
 
  private:
   bool take_round() {
@@ -240,16 +241,19 @@ class Partition {
 }  // namespace dual
 
 template <class Exec>
-DualMesh triangulate_dual_body(Exec& exec, const SurfaceMesh& surface, SeedSet& seeds, const DualOptions& options,
-                               DualReport& report) {
-  dual::Partition<Exec> partition(exec, surface, seeds, options, report);
-  DualMesh mesh;
+Triangulation triangulate_dual_body(Exec& exec, const SurfaceMesh& surface, SeedSet&& seeds,
+                                    const DualOptions& options) {
+  Triangulation out;
+  dual::Partition<Exec> partition(exec, surface, seeds, options, out.report);
+  DualMesh& mesh = out.mesh;
   mesh.triangles = partition.repair();
+  if (options.keep_cells) out.cell = std::move(partition).take_labels();
   exec.sort(mesh.triangles.view(), ByIndices{});
   dual::grow(exec, mesh.position, seeds.size(), PointQ8{0, 0, 0});
   exec.for_each("place vertices", seeds.size(),
                 dual::CopyOrFill<PointQ8>{seeds.position.view(), mesh.position.view(), PointQ8{0, 0, 0}});
-  return mesh;
+  out.seeds = std::move(seeds);
+  return out;
 }
 
 }  // namespace isoshell
