@@ -72,6 +72,27 @@ class TriangleSpace {
       return true;
     });
   }
+  /// The same where they may meet what those that they replace met. Cost: looks at each of these, too.
+  bool meet_no_more(const std::vector<CornersOfTriangle>& made, const std::vector<uint32_t>& replaced) const {
+    const auto is_in = [](const std::vector<uint32_t>& list, uint32_t number) {
+      return std::find(list.begin(), list.end(), number) != list.end();
+    };
+    std::vector<uint32_t> before;
+    bool met_each_other = false;
+    for (const uint32_t r : replaced)
+      for_each_met(corners_[r], [&](uint32_t other) {
+        if (other == r) return;
+        before.push_back(other);
+        met_each_other = met_each_other || is_in(replaced, other);
+      });
+    if (before.empty()) return false;
+    bool meet_more = false;
+    for (size_t i = 0; i < made.size() && !meet_more; ++i) {
+      for (size_t j = 0; j < i && !met_each_other; ++j) meet_more = meet_more || meet(made[i], made[j]);
+      for_each_met(made[i], [&](uint32_t t) { meet_more = meet_more || !(is_in(replaced, t) || is_in(before, t)); });
+    }
+    return !meet_more;
+  }
   /// Calls use(number) for each triangle that a triangle meets outside of corners that they share, or that it is.
   template <class Use>
   void for_each_met(const CornersOfTriangle& triangle, Use use) const {

@@ -70,6 +70,44 @@ uint32_t vertex_at(const FeatureMesh& mesh, const WorldPoint& p) {
                   mesh.vertices.begin());
 }
 
+/// A cube of side 2 around 0 whose edges and corners are cut off, so wide.
+TriangleSoup bevelled_cube(double width) {
+  TriangleSoup soup;
+  const auto sign = [](uint32_t corner, uint32_t axis) { return corner >> axis & 1 ? 1. : -1.; };
+  for (uint32_t corner = 0; corner < 8; ++corner)  // three points each, on the face of each axis
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      const auto on_axis = [&](uint32_t i) { return sign(corner, i) * (i == axis ? 1 : 1 - width); };
+      soup.vertices.push_back({on_axis(0), on_axis(1), on_axis(2)});
+    }
+  const auto outward = [&](uint32_t a, uint32_t b, uint32_t c) {
+    const WorldPoint &p = soup.vertices[a], &q = soup.vertices[b], &r = soup.vertices[c];
+    if (dot(doubled_area(p, q, r), p + q + r) < 0) std::swap(b, c);
+    shapes::add_triangle(soup, a, b, c);
+  };
+  const auto quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    outward(a, b, c);
+    outward(a, c, d);
+  };
+  for (uint32_t corner = 0; corner < 8; ++corner) outward(3 * corner, 3 * corner + 1, 3 * corner + 2);
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const uint32_t u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3, up = 1u << axis;
+    for (const uint32_t side : {0u, up})
+      quad(3 * side + axis, 3 * (side + u) + axis, 3 * (side + u + v) + axis, 3 * (side + v) + axis);
+    for (const uint32_t at : {0u, u, v, u + v}) {  // along the axis
+      const uint32_t one = (axis + 1) % 3, other = (axis + 2) % 3;
+      quad(3 * at + one, 3 * (at + up) + one, 3 * (at + up) + other, 3 * at + other);
+    }
+  }
+  return soup;
+}
+
+double volume_of(const FeatureMesh& mesh) {
+  double volume = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    volume += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6;
+  return volume;
+}
+
 const Context context;
 
 }  // namespace
@@ -79,18 +117,18 @@ TEST_CASE("slivers: triangles without area along an edge go, and the edge is the
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({.5, 1.1, 1.2, 2.7, 3.9}));
   const size_t triangles = mesh.triangles.size(), vertices = mesh.vertices.size();
   REQUIRE(least_height_in(mesh) == 0);
-  CHECK(remove_slivers(mesh, {}, context));
+  CHECK(remove_slivers(mesh, {}, 0, context));
   CHECK(mesh.triangles.size() == triangles);
   CHECK(mesh.vertices.size() == vertices);
   CHECK(is_closed(mesh));
   CHECK(least_height_in(mesh) > least_height_world(mesh));
   CHECK(counts_of(find_curves(mesh, {CreaseMode::automatic, 0, .2})) == Counts{12, 0, 0, 0, 8});
-  CHECK_FALSE(remove_slivers(mesh, {}, context));
+  CHECK_FALSE(remove_slivers(mesh, {}, 0, context));
 }
 
 TEST_CASE("slivers: edges shorter than rounding tells are collapsed", "[features][unit]") {
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({1, 1 + 1e-6, 1 + 2e-6, 3, 4 - 1e-6}));
-  CHECK(remove_slivers(mesh, {}, context));
+  CHECK(remove_slivers(mesh, {}, 0, context));
   CHECK(mesh.vertices.size() == 8 + 2);
   CHECK(mesh.triangles.size() == 2 * mesh.vertices.size() - 4);
   CHECK(mesh.source_face.size() == mesh.triangles.size());
@@ -102,7 +140,7 @@ TEST_CASE("slivers: edges that are to stay do", "[features][unit]") {
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({1, 1 + 1e-6, 3}));
   const WorldPoint left{0, 0, 1}, right{4, 0, 1};
   CHECK(has_edge(mesh, edge_key(vertex_at(mesh, left), vertex_at(mesh, right))));
-  remove_slivers(mesh, {edge_key(vertex_at(mesh, left), vertex_at(mesh, right))}, context);
+  remove_slivers(mesh, {edge_key(vertex_at(mesh, left), vertex_at(mesh, right))}, 0, context);
   CHECK(is_closed(mesh));
   CHECK(has_edge(mesh, edge_key(vertex_at(mesh, left), vertex_at(mesh, right))));
 }
@@ -111,19 +149,58 @@ TEST_CASE("slivers: a round edge in steps that are far shorter than rounding tel
           "[features][unit]") {
   FeatureMesh mesh = weld_for_features(cylinder(3000, 1, 1));
   mesh.rounding_world = .04 / 16;  // twenty steps
-  CHECK(remove_slivers(mesh, {}, context));
+  CHECK(remove_slivers(mesh, {}, 0, context));
   CHECK(is_closed(mesh));
   CHECK(mesh.vertices.size() < 1000);
-  double volume = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    volume += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6;
-  CHECK(volume == Approx(kTau / 2).epsilon(.002));
+  CHECK(volume_of(mesh) == Approx(kTau / 2).epsilon(.002));
+}
+
+TEST_CASE("slivers: bevels narrower than a 32nd of an edge become one crease each, wider ones stay",
+          "[features][unit]") {
+  for (const double edge : {.2, 0.}) {
+    FeatureMesh mesh = weld_for_features(bevelled_cube(.002));
+    CHECK(remove_slivers(mesh, {}, edge, context) == (edge > 0));
+    CHECK(is_closed(mesh));
+    CHECK(mesh.vertices.size() == (edge > 0 ? 8 : 24));
+    CHECK(volume_of(mesh) == Approx(8).epsilon(.005));
+    if (edge > 0) CHECK(counts_of(find_curves(mesh, {CreaseMode::automatic, 0, edge})) == Counts{12, 0, 0, 0, 8});
+  }
+  FeatureMesh wide = weld_for_features(bevelled_cube(.02));
+  CHECK_FALSE(remove_slivers(wide, {}, .2, context));
+  CHECK(wide.vertices.size() == 24);
+}
+
+TEST_CASE("slivers: bevels whose edges are to stay do", "[features][unit]") {
+  FeatureMesh mesh = weld_for_features(bevelled_cube(.002));
+  std::vector<uint64_t> kept;
+  for (const auto& t : mesh.triangles)
+    for (size_t i = 0; i < 3; ++i) kept.push_back(edge_key(t[i], t[(i + 1) % 3]));
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  CHECK_FALSE(remove_slivers(mesh, kept, .2, context));
+}
+
+TEST_CASE("slivers: sides of a wall thinner than a 32nd of an edge are not joined", "[features][unit]") {
+  for (const double thickness : {.004, .001}) {
+    FeatureMesh mesh = weld_for_features(cylinder(48, 1, thickness));
+    const double volume = volume_of(mesh);
+    remove_slivers(mesh, {}, .2, context);
+    CHECK(is_closed(mesh));
+    CHECK(volume_of(mesh) == Approx(volume).epsilon(.01));
+  }
+}
+
+TEST_CASE("slivers: narrow facets of a round part are no strips", "[features][unit]") {
+  FeatureMesh mesh = weld_for_features(cylinder(2000, 1, 1));
+  const auto triangles = mesh.triangles;
+  CHECK_FALSE(remove_slivers(mesh, {}, .2, context));
+  CHECK(mesh.triangles == triangles);
 }
 
 TEST_CASE("slivers: a mesh without any is left as it is", "[features][unit]") {
   FeatureMesh ball = weld_for_features(shapes::sphere({0, 0, 0}, 1, 24));
   const auto triangles = ball.triangles;
-  CHECK_FALSE(remove_slivers(ball, {}, context));
+  CHECK_FALSE(remove_slivers(ball, {}, 0, context));
   CHECK(ball.triangles == triangles);
 }
 

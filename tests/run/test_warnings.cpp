@@ -85,7 +85,7 @@ TEST_CASE("warnings: another number of vertices than was asked for is said, and 
   options.vertices = 200;
   options.regions = "components";
   const RunResult regions = run_of(boxes_with_spikes(), options, "count");
-  CHECK(contains(warnings_of(regions), " vertices instead of 200: the walls of its regions are as they came in"));
+  CHECK(contains(warnings_of(regions), " vertices instead of 200: the curves between its regions"));
   REQUIRE_FALSE(regions.missed_gates.empty());
   CHECK(contains(regions.missed_gates.back(), "count: the result has "));
   options.regions = "";

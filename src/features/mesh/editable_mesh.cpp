@@ -174,7 +174,7 @@ bool EditableMesh::are_free(MeshChange& change) const {
   if (!space_) return true;
   change.corners.clear();
   for (const RegionTriangle& t : change.made) change.corners.push_back(corners(t));
-  return space_->are_free(change.corners, change.replaced);
+  return space_->are_free(change.corners, change.replaced) || space_->meet_no_more(change.corners, change.replaced);
 }
 
 bool EditableMesh::commit(MeshChange& change) {

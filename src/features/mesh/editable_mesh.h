@@ -121,8 +121,8 @@ class EditableMesh {
   }
   CornersOfTriangle corners(const RegionTriangle& t) const;
 
-  /// From now on no triangle comes to meet another one, as far as that is not so already. They are in cells of that
-  /// size.
+  /// From now on no triangle comes to meet another one, but those that the triangles that it replaces met. They are in
+  /// cells of that size.
   void keep_apart(double cell_q8);
   /// Calls use(number) for each other triangle that one meets outside of corners that they share. After keep_apart.
   template <class Use>

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
-#include "features/mesh/twin_triangles.h"
+#include "features/mesh/editable_mesh.h"
+#include "features/mesh/mesh_fans.h"
 #include "geometry/box.h"
 #include "geometry/world_vector.h"
 
@@ -15,232 +17,356 @@ namespace {
 
 constexpr double kThinHeight = 1e-5;           // of the largest extent: what floats round is 100 times smaller
 constexpr double kThinRoundings = 16;          // a triangle as high turns by 5 degrees where its vertices are rounded
+constexpr double kStrip = 1. / 32;             // of the edge length: the sides of a narrower strip become one crease
+constexpr double kStripIsLonger = 4;           // than it is high
+constexpr double kStripTurns = .85;            // cosine between normals across its longest edge
+constexpr double kAllButLongest = .95;         // of the longest edge
 constexpr double kMostOffPlane = 1. / 16;      // of the least height: what rounding may have moved from a plane
 constexpr double kLeastCosine = .5;            // between normals before and after a change
+constexpr double kFollows = .985;              // beside a strip: the side that it is taken into stays as it lies
+constexpr double kOpposite = -.87;             // cosine between normals of sides that meet at less than 30 degrees
 constexpr double kRoundedAway = 1e-9;          // sums of two angles of 180 degrees, as in grids, are not told from it
 constexpr double kParallel = .999;             // cosine between normals in one plane
-constexpr uint32_t kMostAround = 1024;         // triangles around a vertex that is changed
+constexpr size_t kMostAround = 1024;           // triangles around a vertex that is changed
 constexpr size_t kChangesBetweenLooks = 4096;  // whether the run goes on
-constexpr size_t kMostChanges = 64;  // a thin triangle, far more than it takes; rounding may not make it endless
+constexpr size_t kMostChanges = 64;         // a thin triangle, far more than it takes; rounding may not make it endless
+constexpr double kStepsOfExtent = 1 << 20;  // where nothing was rounded
+constexpr double kMostCells = 8;            // that a triangle's box meets, in the mean
 
 double height_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
   const double longest = std::sqrt(std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)}));
   return longest > 0 ? length(doubled_area(a, b, c)) / longest : 0;
 }
 
-class Slivers : private TwinTriangles {
- public:
-  /// `twin`: between edges that are kept.
-  Slivers(FeatureMesh& mesh, std::vector<uint32_t>& twin, double least_height, const std::vector<uint64_t>& kept)
-      : TwinTriangles(mesh.triangles, twin),
-        mesh_(mesh),
-        least_(least_height),
-        stays_(mesh.vertices.size(), 0),
-        corners_at_(mesh.vertices.size(), 0) {
-    for (const uint64_t edge : kept) stays_[edge >> 32] = stays_[uint32_t(edge)] = 1;
-    for (const auto& t : mesh.triangles)
-      for (const uint32_t v : t) ++corners_at_[v];
+bool is_long(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c, double high) {
+  const double longest_sq = std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)});
+  return longest_sq > kStripIsLonger * kStripIsLonger * high * high;
+}
+
+/// Whether the surface turns at the longest edge of a triangle, or one all but as long: at shorter ones it does in
+/// planes with a round border, too. `area_beside(edge)`: of the triangle there, none where there is none.
+template <class AreaBeside>
+bool turns_at_longest(const std::array<WorldPoint, 3>& corner, AreaBeside area_beside) {
+  const WorldPoint area = doubled_area(corner[0], corner[1], corner[2]);
+  std::array<double, 3> long_sq;
+  for (size_t i = 0; i < 3; ++i) long_sq[i] = distance_sq(corner[i], corner[(i + 1) % 3]);
+  const double longest_sq = std::max({long_sq[0], long_sq[1], long_sq[2]});
+  for (size_t i = 0; i < 3; ++i) {
+    if (long_sq[i] < kAllButLongest * kAllButLongest * longest_sq) continue;
+    const WorldPoint beside = area_beside(i);
+    if (dot(area, beside) < kStripTurns * length(area) * length(beside)) return true;
+  }
+  return false;
+}
+
+/// The steps that coordinates were rounded to, or finer ones than matter.
+struct Steps {
+  explicit Steps(const FeatureMesh& mesh) {
+    const auto box = box_of(mesh.vertices);
+    origin = box.min;
+    size_world = mesh.rounding_world > 0 ? 2 * mesh.rounding_world : longest_side(box) / kStepsOfExtent;
   }
 
-  bool remove(std::vector<uint32_t> thin, const Context& context) {
-    waiting_ = with_planes_of(std::move(thin));
+  WorldPoint origin;
+  double size_world;
+};
+
+/// Vertices at edges that have no two sides, or are kept, are corners: they stay.
+EditableMesh editable(const FeatureMesh& mesh, MeshTwins twins, const Steps& steps) {
+  std::vector<RegionVertex> vertices(mesh.vertices.size());
+  for (size_t v = 0; v < vertices.size(); ++v)
+    vertices[v].position = (1 / steps.size_world) * (mesh.vertices[v] - steps.origin);
+  std::vector<RegionTriangle> triangles(mesh.triangles.size());
+  std::vector<uint64_t> on_curves;
+  for (uint32_t h = 0; h < twins.of.size(); ++h) {
+    RegionTriangle& t = triangles[h / 3];
+    const std::array<uint32_t, 3>& corner = mesh.triangles[h / 3];
+    t.corner[h % 3] = corner[h % 3];
+    t.curve[h % 3] = twins.of[h] == kNone ? 0 : kNone;
+    if (twins.of[h] == kNone) on_curves.push_back(edge_key(corner[h % 3], corner[(h + 1) % 3]));
+  }
+  std::sort(on_curves.begin(), on_curves.end());
+  on_curves.erase(std::unique(on_curves.begin(), on_curves.end()), on_curves.end());
+  for (const uint64_t edge : on_curves)
+    vertices[edge >> 32].kind = vertices[uint32_t(edge)].kind = RegionVertex::Kind::corner;
+  const MeshFans fans = find_fans(mesh.triangles, int64_t(vertices.size()), on_curves, std::move(twins));
+  std::vector<uint32_t> fan(vertices.size(), kNone);
+  for (const uint32_t v : fans.vertex) {
+    if (fan[v] != kNone) vertices[v].kind = RegionVertex::Kind::corner;
+    fan[v] = v;
+  }
+  return {std::move(vertices), std::move(triangles), EditableMesh::Size::many};
+}
+
+class Slivers : private EditableMesh {
+ public:
+  /// Heights in steps.
+  Slivers(EditableMesh mesh, double least_height, double strip_height)
+      : EditableMesh(std::move(mesh)), least_(least_height), strip_(strip_height), stays_(vertices().size(), 0) {
+    keep_apart(cell());
+  }
+
+  /// `found`: slivers, which are not gone.
+  bool remove(std::vector<uint32_t> found, const Context& context) {
+    waiting_ = with_planes_of(std::move(found));
     std::reverse(waiting_.begin(), waiting_.end());
     size_t changes = 0;
     for (const size_t most = kMostChanges * waiting_.size(); !waiting_.empty() && changes < most;) {
       const uint32_t t = waiting_.back();
       waiting_.pop_back();
-      if (is_removed(t) || !change(t)) continue;
+      if (triangles()[t].is_gone() || !change(t)) continue;
       if (++changes % kChangesBetweenLooks == 0) check_cancel(context, "features");
     }
     return changes > 0;
   }
 
-  void drop_removed() {
-    const size_t before = mesh_.triangles.size();
+  /// Writes what is left into the mesh that it was made from.
+  void put_into(FeatureMesh& mesh) const {
     size_t kept = 0;
-    for (size_t t = 0; t < before; ++t) {
-      if (is_removed(uint32_t(t))) continue;
-      mesh_.triangles[kept] = mesh_.triangles[t];
-      mesh_.source_face[kept++] = mesh_.source_face[t];
+    for (size_t t = 0; t < triangles().size(); ++t) {
+      if (triangles()[t].is_gone()) continue;
+      mesh.triangles[kept] = triangles()[t].corner;
+      mesh.source_face[kept++] = mesh.source_face[t];
     }
-    if (kept == before) return;
-    mesh_.triangles.resize(kept);
-    mesh_.source_face.resize(kept);
-    std::vector<uint32_t> number(mesh_.vertices.size(), kNone);
+    mesh.triangles.resize(kept);
+    mesh.source_face.resize(kept);
+    std::vector<uint32_t> number(mesh.vertices.size(), kNone);
     uint32_t count = 0;
     for (uint32_t v = 0; v < number.size(); ++v) {
-      if (corners_at_[v] == 0) continue;
-      mesh_.vertices[count] = mesh_.vertices[v];
+      if (around(v).empty()) continue;
+      mesh.vertices[count] = mesh.vertices[v];
       number[v] = count++;
     }
-    mesh_.vertices.resize(count);
-    for (auto& t : mesh_.triangles)
+    mesh.vertices.resize(count);
+    for (auto& t : mesh.triangles)
       for (uint32_t& v : t) v = number[v];
   }
 
  private:
-  const WorldPoint& at(uint32_t v) const { return mesh_.vertices[v]; }
-  double length_at(uint32_t h) const { return std::sqrt(distance_sq(at(from(h)), at(to(h)))); }
-  bool is_removed(uint32_t t) const { return mesh_.triangles[t][0] == kNone; }
-  double height(uint32_t t) const {
-    const auto& c = mesh_.triangles[t];
-    return height_of(at(c[0]), at(c[1]), at(c[2]));
+  /// An edge a, b between a triangle with the third corner c and one with d.
+  struct Flap {
+    uint32_t a, b, c, d, triangle, other;
+    size_t edge;
+  };
+
+  /// A triangle's box meets few of them in the mean, however large some triangles are.
+  double cell() const {
+    for (double side = 64;; side *= 2) {
+      double cells = 0;
+      for (const RegionTriangle& t : triangles()) {
+        const auto box = box_of(at(t.corner[0]), at(t.corner[1]), at(t.corner[2]));
+        const WorldPoint size = (1 / side) * (box.max - box.min);
+        cells += (1 + size.x) * (1 + size.y) * (1 + size.z);
+      }
+      if (cells <= kMostCells * double(triangles().size())) return side;
+    }
   }
-  bool is_thin(uint32_t t) const { return !is_removed(t) && height(t) < least_; }
-  void wait_if_thin(uint32_t t) {
-    if (is_thin(t)) waiting_.push_back(t);
+
+  /// None of an edge without two sides.
+  std::optional<Flap> flap(uint32_t t, size_t edge) const {
+    const RegionTriangle& triangle = triangles()[t];
+    if (triangle.curve[edge] != kNone) return {};
+    const uint32_t a = triangle.corner[edge], b = triangle.corner[(edge + 1) % 3], c = triangle.corner[(edge + 2) % 3];
+    const uint32_t other = find_around(b, [&](const RegionTriangle& s) { return s.edge_between(b, a) < 3; });
+    const RegionTriangle& beside = triangles()[other];
+    return Flap{a, b, c, beside.corner[(beside.edge_between(b, a) + 2) % 3], t, other, edge};
+  }
+  double length_of(uint32_t t, size_t edge) const {
+    const auto& c = triangles()[t].corner;
+    return length(at(c[(edge + 1) % 3]) - at(c[edge]));
+  }
+  double longest_of(uint32_t t) const { return std::max({length_of(t, 0), length_of(t, 1), length_of(t, 2)}); }
+  WorldPoint area_of(uint32_t t) const { return normal(triangles()[t]); }
+  double height(uint32_t t) const {
+    const auto& [a, b, c] = triangles()[t].corner;
+    return height_of(at(a), at(b), at(c));
+  }
+  bool is_thin(uint32_t t) const { return !triangles()[t].is_gone() && (height(t) < least_ || is_of_strip(t)); }
+  bool is_of_strip(uint32_t t) const {
+    const auto& [a, b, c] = triangles()[t].corner;
+    const double high = height(t);
+    return high < strip_ && is_long(at(a), at(b), at(c), high) && turns_beside(t);
+  }
+  bool turns_beside(uint32_t t) const {
+    const auto& [a, b, c] = triangles()[t].corner;
+    return turns_at_longest({at(a), at(b), at(c)}, [&](size_t edge) {
+      const std::optional<Flap> beside = flap(t, edge);
+      return beside ? area_of(beside->other) : WorldPoint{0, 0, 0};
+    });
   }
 
   /// And all triangles that are in a plane with them, as far as these hang together: that of the first of them that is
   /// not thin.
-  std::vector<uint32_t> with_planes_of(std::vector<uint32_t> triangles) const {
-    std::vector<uint8_t> is_in(mesh_.triangles.size(), 0);
-    for (const uint32_t t : triangles) is_in[t] = 1;
-    std::vector<WorldPoint> plane(triangles.size(), {0, 0, 0});
-    for (size_t i = 0; i < triangles.size(); ++i) {
-      if (length_sq(plane[i]) == 0 && !is_thin(triangles[i])) plane[i] = area_of(triangles[i]);
-      for (const uint32_t h : {3 * triangles[i], 3 * triangles[i] + 1, 3 * triangles[i] + 2}) {
-        if (twin_[h] == kNone || is_in[twin_[h] / 3] || !is_flat(h)) continue;
-        const WorldPoint n = area_of(twin_[h] / 3);
-        if (dot(n, plane[i]) < kParallel * length(n) * length(plane[i]) && !is_thin(twin_[h] / 3)) continue;
-        is_in[twin_[h] / 3] = 1;
-        triangles.push_back(twin_[h] / 3);
+  std::vector<uint32_t> with_planes_of(std::vector<uint32_t> found) const {
+    std::vector<uint8_t> is_in(triangles().size(), 0);
+    for (const uint32_t t : found) is_in[t] = 1;
+    std::vector<WorldPoint> plane(found.size(), {0, 0, 0});
+    for (size_t i = 0; i < found.size(); ++i) {
+      if (length_sq(plane[i]) == 0 && !is_thin(found[i])) plane[i] = area_of(found[i]);
+      for (size_t edge = 0; edge < 3; ++edge) {
+        const std::optional<Flap> beside = flap(found[i], edge);
+        if (!beside || is_in[beside->other] || !is_flat(*beside)) continue;
+        const WorldPoint n = area_of(beside->other);
+        if (dot(n, plane[i]) < kParallel * length(n) * length(plane[i]) && !is_thin(beside->other)) continue;
+        is_in[beside->other] = 1;
+        found.push_back(beside->other);
         plane.push_back(plane[i]);
       }
     }
-    return triangles;
-  }
-
-  WorldPoint area_of(uint32_t t) const {
-    const auto& c = mesh_.triangles[t];
-    return doubled_area(at(c[0]), at(c[1]), at(c[2]));
+    return found;
   }
 
   /// Whether the triangles of an edge are in a plane, and face the same way.
-  bool is_flat(uint32_t h) const {
-    const WorldPoint &a = at(from(h)), &b = at(to(h)), &c = at(opposite(h)), &d = at(opposite(twin_[h]));
-    const WorldPoint at_c = doubled_area(a, b, c), at_d = doubled_area(b, a, d);
-    return std::abs(dot(at_c, d - a)) <= kMostOffPlane * least_ * length(at_c + at_d) && dot(at_c, at_d) >= 0;
+  bool is_flat(const Flap& f) const {
+    const WorldPoint at_c = area_of(f.triangle), at_d = area_of(f.other);
+    return std::abs(dot(at_c, at(f.d) - at(f.a))) <= kMostOffPlane * least_ * length(at_c + at_d) &&
+           dot(at_c, at_d) >= 0;
   }
 
   bool change(uint32_t t) {
-    std::array<uint32_t, 3> edge{3 * t, 3 * t + 1, 3 * t + 2};
-    std::stable_sort(edge.begin(), edge.end(), [&](uint32_t g, uint32_t h) { return length_at(g) > length_at(h); });
-    if (const uint32_t h = edge[2]; twin_[h] != kNone && length_at(h) < least_) {
-      const bool starts_at_fewer = corners_at_[from(h)] <= corners_at_[to(h)];
-      for (const uint32_t along : {starts_at_fewer ? h : twin_[h], starts_at_fewer ? twin_[h] : h}) {
-        if (!may_collapse(along)) continue;
-        collapse(along);
-        return true;
-      }
-    }
-    for (const uint32_t h : edge) {
-      if (twin_[h] == kNone || !should_flip(h, h == edge[0])) continue;
-      flip_edge(h);
+    std::array<size_t, 3> edge{0, 1, 2};
+    std::stable_sort(edge.begin(), edge.end(), [&](size_t i, size_t j) { return length_of(t, i) > length_of(t, j); });
+    const double most = is_of_strip(t) ? std::max(least_, strip_) : least_;
+    if (const std::optional<Flap> shortest = flap(t, edge[2]);
+        shortest && length_of(t, edge[2]) < most && collapse_either(*shortest))
       return true;
+    for (const size_t i : edge) {
+      const std::optional<Flap> f = flap(t, i);
+      if (f && flip(*f, i == edge[0])) return true;
     }
     return false;
   }
 
-  bool should_flip(uint32_t h, bool is_longest) const {
-    const uint32_t g = twin_[h];
-    const WorldPoint &a = at(from(h)), &b = at(to(h)), &c = at(opposite(h)), &d = at(opposite(g));
-    const WorldPoint at_c = doubled_area(a, b, c), at_d = doubled_area(b, a, d);
-    if (is_longest && is_thin(h / 3) && is_thin(g / 3) && is_longest_of(g))
-      return length(d - c) < length(b - a) && !may_be_beside(before(h), opposite(g));
-    const bool flat = is_flat(h);
-    if (!(flat ? is_obtuse(h, at_c, at_d) : is_longest && is_thin(h / 3) && is_cap_beside(h))) return false;
-    const WorldPoint side = flat ? at_c + at_d : at_d, at_a = doubled_area(a, d, c), at_b = doubled_area(b, c, d);
-    const auto faces_so = [&](const WorldPoint& n) { return dot(n, side) > kLeastCosine * length(n) * length(side); };
-    return faces_so(at_a) && faces_so(at_b) && !may_be_beside(before(h), opposite(g));
+  bool may_change_around(uint32_t v) const { return around(v).size() <= kMostAround; }
+  void wait_if_thin(uint32_t t) {
+    if (is_thin(t)) waiting_.push_back(t);
   }
 
-  bool is_longest_of(uint32_t h) const { return length_at(h) >= std::max(length_at(next(h)), length_at(before(h))); }
+  bool should_flip(const Flap& f, bool is_longest) const {
+    if (is_longest && is_thin(f.triangle) && is_thin(f.other) && longest_of(f.other) <= length_of(f.triangle, f.edge))
+      return length(at(f.d) - at(f.c)) < length(at(f.b) - at(f.a));
+    const bool flat = is_flat(f);
+    if (!(flat ? is_obtuse(f) : is_longest && is_thin(f.triangle) && is_cap(f))) return false;
+    const WorldPoint side = flat ? area_of(f.triangle) + area_of(f.other) : area_of(f.other);
+    const double most_turn = flat || height(f.triangle) < least_ ? kLeastCosine : kFollows;
+    const auto faces_so = [&](const WorldPoint& n) { return dot(n, side) > most_turn * length(n) * length(side); };
+    if (!faces_so(doubled_area(at(f.a), at(f.d), at(f.c))) || !faces_so(doubled_area(at(f.b), at(f.c), at(f.d))))
+      return false;
+    return flat || !has_back_of(side, f.c);
+  }
 
   /// Whether the angles at c and d are more than 180 degrees together.
-  bool is_obtuse(uint32_t h, const WorldPoint& at_c, const WorldPoint& at_d) const {
-    const WorldPoint &a = at(from(h)), &b = at(to(h)), &c = at(opposite(h)), &d = at(opposite(twin_[h]));
-    const double left = dot(a - c, b - c) * length(at_d), right = dot(a - d, b - d) * length(at_c);
+  bool is_obtuse(const Flap& f) const {
+    const WorldPoint &a = at(f.a), &b = at(f.b), &c = at(f.c), &d = at(f.d);
+    const double left = dot(a - c, b - c) * length(area_of(f.other)),
+                 right = dot(a - d, b - d) * length(area_of(f.triangle));
     return left + right < -kRoundedAway * (std::abs(left) + std::abs(right));
   }
 
   /// Of a triangle whose corner c is nearly on the edge: whether the other one is high enough, and both are higher
   /// afterwards.
-  bool is_cap_beside(uint32_t h) const {
-    const WorldPoint &a = at(from(h)), &b = at(to(h)), &c = at(opposite(h)), &d = at(opposite(twin_[h]));
-    return !is_thin(twin_[h] / 3) && std::min(height_of(a, d, c), height_of(b, c, d)) > height(h / 3);
+  bool is_cap(const Flap& f) const {
+    const WorldPoint &a = at(f.a), &b = at(f.b), &c = at(f.c), &d = at(f.d);
+    return !is_thin(f.other) && std::min(height_of(a, d, c), height_of(b, c, d)) > height(f.triangle);
   }
 
-  /// Whether an edge joins the vertex that a half-edge begins at to another one, or may: there are other fans at it, or
-  /// too many triangles.
-  bool may_be_beside(uint32_t begin, uint32_t other) const {
-    if (corners_at_[from(begin)] > kMostAround) return true;
-    uint32_t count = 0;
-    bool is_found = false;
-    visit_fan(begin, [&](uint32_t h) {
-      ++count;
-      is_found = to(h) == other || opposite(h) == other;
-      return !is_found;
-    });
-    return is_found || count != corners_at_[from(begin)];
+  static bool are_opposite(const WorldPoint& m, const WorldPoint& n) {
+    return dot(m, n) < kOpposite * length(m) * length(n);
+  }
+  /// Whether a triangle around a vertex is the other side of a thin wall.
+  bool has_back_of(const WorldPoint& side, uint32_t v) const {
+    return std::any_of(around(v).begin(), around(v).end(), [&](uint32_t t) { return are_opposite(side, area_of(t)); });
+  }
+  /// Whether surfaces beside narrow triangles around two vertices look away from each other.
+  bool are_sides_of_wall(uint32_t v, uint32_t w) const {
+    std::vector<WorldPoint> sides;
+    for (const uint32_t at : {v, w})
+      for (const uint32_t t : around(at))
+        if (is_thin(t)) append_sides(t, sides);
+    for (size_t i = 0; i < sides.size(); ++i)
+      for (size_t j = 0; j < i; ++j)
+        if (are_opposite(sides[i], sides[j])) return true;
+    return false;
+  }
+  /// Across edges that are not short.
+  void append_sides(uint32_t t, std::vector<WorldPoint>& sides) const {
+    for (size_t edge = 0; edge < 3; ++edge)
+      if (const std::optional<Flap> beside = flap(t, edge); beside && 2 * length_of(t, edge) > longest_of(t))
+        sides.push_back(area_of(beside->other));
   }
 
-  void flip_edge(uint32_t h) {
-    const uint32_t t = h / 3, u = twin_[h] / 3;
-    --corners_at_[from(h)], --corners_at_[to(h)], ++corners_at_[opposite(h)], ++corners_at_[opposite(twin_[h])];
-    flip(h);
-    // Edges t + 1 and u + 1 are the one that was made.
-    for (const uint32_t outer : {3 * t, 3 * t + 2, 3 * u, 3 * u + 2})
-      if (twin_[outer] != kNone) wait_if_thin(twin_[outer] / 3);
-    waiting_.insert(waiting_.end(), {u, t});
+  bool flip(const Flap& f, bool is_longest) {
+    if (!may_change_around(f.a) || !may_change_around(f.c)) return false;
+    if (!EditableMesh::flip(f.triangle, f.edge, change_, [&] { return should_flip(f, is_longest); })) return false;
+    for (const uint32_t t : {f.triangle, f.other})
+      for (size_t i = 0; i < 3; ++i)
+        if (const std::optional<Flap> beside = flap(t, i);
+            beside && beside->other != f.triangle && beside->other != f.other)
+          wait_if_thin(beside->other);
+    waiting_.insert(waiting_.end(), {f.other, f.triangle});
+    return true;
   }
 
-  /// Whether the vertex that a half-edge begins at may go to its end: around it is one closed fan, no other vertex than
-  /// c and d is beside both, and no triangle of it turns far.
-  bool may_collapse(uint32_t h) const {
-    const uint32_t a = from(h), b = to(h), c = opposite(h), d = opposite(twin_[h]);
-    if (stays_[a] || c == d || corners_at_[a] > kMostAround || corners_at_[c] < 4 || corners_at_[d] < 4) return false;
-    uint32_t count = 0;
-    bool may = true;
-    const bool is_closed = visit_fan(h, [&](uint32_t out) {
-      ++count;
-      const uint32_t x = to(out), y = opposite(out);
-      if (x == b || y == b) return true;
-      const WorldPoint was = doubled_area(at(a), at(x), at(y)), now = doubled_area(at(b), at(x), at(y));
-      may = (is_thin(out / 3) || dot(was, now) > kLeastCosine * length(was) * length(now)) &&
-            (x == c || x == d || !may_be_beside(next(h), x));
-      return may;
-    });
-    return may && is_closed && count == corners_at_[a];
+  bool collapse_either(const Flap& f) {
+    const bool starts_at_fewer = around(f.a).size() <= around(f.b).size();
+    const uint32_t first = starts_at_fewer ? f.a : f.b, second = starts_at_fewer ? f.b : f.a;
+    return collapse(first, second) || collapse(second, first);
   }
-
-  /// The edges a, c and b, c become one, so do a, d and b, d.
-  void collapse(uint32_t h) {
-    const uint32_t g = twin_[h], a = from(h), b = to(h);
-    std::vector<uint32_t> around;
-    visit_fan(h, [&](uint32_t out) {
-      around.push_back(out);
+  bool collapse(uint32_t gone, uint32_t into) {
+    if (stays_[gone] || !may_change_around(gone) || !may_change_around(into) || are_sides_of_wall(gone, into))
+      return false;
+    const auto turns_little = [&] {
+      for (size_t i = 0; i < change_.made.size(); ++i) {
+        const WorldPoint was = area_of(change_.number[i]), now = normal(change_.made[i]);
+        if (!is_thin(change_.number[i]) && !(dot(was, now) > kLeastCosine * length(was) * length(now))) return false;
+      }
       return true;
-    });
-    for (const uint32_t out : around) mesh_.triangles[out / 3][out % 3] = b;
-    --corners_at_[opposite(h)], --corners_at_[opposite(g)];
-    corners_at_[b] += corners_at_[a] - 4;
-    corners_at_[a] = 0;
-    stays_[b] = 1;  // what was taken into it would go farther with it
-    for (const uint32_t edge : {h, g}) {
-      connect(twin_[next(edge)], twin_[before(edge)]);
-      for (const uint32_t e : {edge, next(edge), before(edge)}) twin_[e] = kNone;
-      mesh_.triangles[edge / 3] = {kNone, kNone, kNone};
-    }
-    for (const uint32_t out : around) wait_if_thin(out / 3);
+    };
+    if (!EditableMesh::collapse(gone, into, change_, turns_little)) return false;
+    stays_[into] = 1;  // what was taken into it would go farther with it
+    for (const uint32_t t : change_.number) wait_if_thin(t);
+    return true;
   }
 
-  FeatureMesh& mesh_;
-  double least_;
-  std::vector<uint8_t> stays_;        ///< per vertex
-  std::vector<uint32_t> corners_at_;  ///< per vertex
-  std::vector<uint32_t> waiting_;     ///< triangles
+  double least_, strip_;
+  std::vector<uint8_t> stays_;     ///< per vertex
+  std::vector<uint32_t> waiting_;  ///< triangles
+  MeshChange change_;
 };
+
+/// What is less high than triangles are to be.
+struct Heights {
+  double least, strip;
+};
+
+/// Triangles that are less high, those of strips by their shape alone.
+std::vector<uint32_t> narrow_triangles(const FeatureMesh& mesh, const Heights& heights) {
+  std::vector<uint8_t> is_narrow(mesh.triangles.size());
+  for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const WorldPoint &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+    const double high = height_of(p, q, r);
+    is_narrow[t] = high < heights.least || (high < heights.strip && is_long(p, q, r, high));
+  });
+  std::vector<uint32_t> found;
+  for (uint32_t t = 0; t < is_narrow.size(); ++t)
+    if (is_narrow[t]) found.push_back(t);
+  return found;
+}
+
+bool is_sliver(const FeatureMesh& mesh, const MeshTwins& twins, uint32_t t, double least_height_world) {
+  const auto corners = [&](uint32_t of) {
+    const auto& [a, b, c] = mesh.triangles[of];
+    return std::array<WorldPoint, 3>{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+  };
+  const std::array<WorldPoint, 3> c = corners(t);
+  return height_of(c[0], c[1], c[2]) < least_height_world || turns_at_longest(c, [&](size_t edge) {
+           const uint32_t twin = twins.of[3 * t + edge];
+           if (twin == kNone) return WorldPoint{0, 0, 0};
+           const std::array<WorldPoint, 3> beside = corners(twin / 3);
+           return doubled_area(beside[0], beside[1], beside[2]);
+         });
+}
 
 }  // namespace
 
@@ -249,21 +375,20 @@ double least_height_world(const FeatureMesh& mesh) {
   return std::max(kThinHeight * extent, kThinRoundings * mesh.rounding_world);
 }
 
-bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, const Context& context) {
-  const double least = least_height_world(mesh);
-  std::vector<uint8_t> is_thin(mesh.triangles.size());
-  for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    is_thin[t] = height_of(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) < least;
-  });
-  std::vector<uint32_t> thin;
-  for (uint32_t t = 0; t < is_thin.size(); ++t)
-    if (is_thin[t]) thin.push_back(t);
-  if (thin.empty()) return false;
+bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, double edge_length_world,
+                    const Context& context) {
+  const Heights heights{least_height_world(mesh), kStrip * edge_length_world};
+  std::vector<uint32_t> found = narrow_triangles(mesh, heights);
+  if (found.empty()) return false;
   MeshTwins twins = find_twins(mesh.triangles, find_edge_sides(mesh.triangles, mesh.vertices.size()), kept);
-  Slivers slivers(mesh, twins.of, least, kept);
-  const bool has_changed = slivers.remove(std::move(thin), context);
-  slivers.drop_removed();
+  const auto is_none = [&](uint32_t t) { return !is_sliver(mesh, twins, t, heights.least); };
+  found.erase(std::remove_if(found.begin(), found.end(), is_none), found.end());
+  if (found.empty()) return false;
+  const Steps steps(mesh);
+  Slivers slivers(editable(mesh, std::move(twins), steps), heights.least / steps.size_world,
+                  heights.strip / steps.size_world);
+  const bool has_changed = slivers.remove(std::move(found), context);
+  if (has_changed) slivers.put_into(mesh);
   return has_changed;
 }
 

@@ -1,4 +1,4 @@
-// Triangles thinner than rounding can tell, out of a mesh that is to be cut.
+// Triangles thinner than rounding can tell, and strips far narrower than edges, out of a mesh that is to be cut.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,14 @@ double least_height_world(const FeatureMesh& mesh);
 
 /// Flips edges of thinner triangles in planes until they are Delaunay, flips the longest edge of one beside a triangle
 /// that is high enough, whose third corner is on that edge but for the least height, and collapses edges shorter than
-/// that. Vertices do not move, and none is taken into one farther away than the least height; their order stays.
-/// `kept`: keys of edges that stay with their ends, ascending. A triangle stays where a change would fold the surface
-/// or join sides of it, or more than a thousand triangles meet. Result: whether anything changed. Cost: a pass over the
-/// triangles where none is thin, else a sort of the half-edges, and a look at the triangles around each change. Throws:
-/// interrupted.
-bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, const Context& context);
+/// that. Strips between creases that are narrower than a 32nd of the edge length become one crease: in results of such
+/// edges they would be triangles with angles of two degrees or less. Vertices do not move, and none is taken into one
+/// farther away than these heights; their order stays. `kept`: keys of edges that stay with their ends, ascending.
+/// `edge_length_world`: 0 where strips are to stay. A triangle stays where a change would fold the surface, join sides
+/// of it or make triangles meet that did not, or where more than a thousand triangles meet. Result: whether anything
+/// changed. Cost: a pass over the triangles where none is thin, else a sort of the half-edges, and a look at the
+/// triangles around each change. Throws: interrupted.
+bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, double edge_length_world,
+                    const Context& context);
 
 }  // namespace isoshell

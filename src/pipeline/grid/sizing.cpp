@@ -209,6 +209,11 @@ bool wants_lengths(const RemeshOptions& options) {
   return options.sizing || options.adaptivity > 0 || !options.region_edge_lengths.empty();
 }
 
+double edge_of_strips_world(const PreparedSurface& p) {
+  const bool are_creases_off = p.options.features.creases == Features::Creases::off;
+  return wants_lengths(p.options) || are_creases_off ? 0 : p.target_of_input.edge_length_world;
+}
+
 RemeshOptions with_even_length(RemeshOptions options, const TriangleSoup& soup) {
   if (options.sizing && !options.vertices && options.adaptivity <= 0)
     if (const double length = even_length_world(*options.sizing, soup); length > 0) options.edge_length_world = length;

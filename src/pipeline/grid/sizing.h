@@ -14,6 +14,8 @@ constexpr double kFewestCellVox = 3.5;  ///< width of a cell: narrower ones are 
 
 /// Whether lengths may vary.
 bool wants_lengths(const RemeshOptions& options);
+/// Beside which strips are narrow: 0 where lengths vary, or there are no creases.
+double edge_of_strips_world(const PreparedSurface& p);
 
 constexpr double kCellOfEdge =
     0.9306048591020996;  ///< width of a cell, the root of its area, over the edges: root of sqrt(3) / 2
