@@ -20,13 +20,21 @@ constexpr double kLessIfSteady =
 constexpr double kLeastPart = (1 - kLess) / 3;  ///< of the cost that the triangle itself must have for changes to pay
 constexpr int64_t kFewPoor = 3;                 ///< triangles of a region, for which every change is relaxed
 constexpr size_t kMostTries = 6;                ///< changes that are relaxed where more are poor
-constexpr int64_t kFewTries = 20000;            ///< that every mesh may take
-constexpr double kHopeless = 1.5;  ///< of the least cost so far: a change that is above after a round is given up
+constexpr size_t kFewLeft = 16;  ///< poor triangles of a mesh, for which two changes are tried, one after the other
+constexpr int64_t kFewTries = 20000;  ///< that every mesh may take
+constexpr double kHopeless = 1.5;     ///< of the least cost so far: a change that is above after a round is given up
 
 /// Along strips narrower than edges all triangles are poor. Where one hardly counts beside the others, changes at its
 /// corners do not save what they must, and the others have their own turn.
 bool is_among_worse(const MeshRegion& region) {
   return region.poor() > kFewPoor && region.cost_of_first() < kLeastPart * region.cost();
+}
+
+std::vector<MeshRegion> cheapest(std::vector<MeshRegion> regions, size_t most) {
+  std::stable_sort(regions.begin(), regions.end(),
+                   [](const MeshRegion& a, const MeshRegion& b) { return a.cost() < b.cost(); });
+  if (regions.size() > most) regions.erase(regions.begin() + int64_t(most), regions.end());
+  return regions;
 }
 
 template <class T>
@@ -188,14 +196,23 @@ std::vector<MeshRegion> PatchMesh::promising(const MeshRegion& region, Reach rea
     there.flip_edges();
     made.push_back(std::move(there));
   }
-  std::stable_sort(made.begin(), made.end(),
-                   [](const MeshRegion& a, const MeshRegion& b) { return a.cost() < b.cost(); });
-  if (!are_few && made.size() > kMostTries) made.erase(made.begin() + kMostTries, made.end());
-  return made;
+  const size_t most = are_few ? made.size() : kMostTries;
+  return cheapest(std::move(made), most);
+}
+
+/// Looks for a better region than the best one so far, a change beyond another one. `made`: takes all of them, where it
+/// is asked for.
+void PatchMesh::search(const MeshRegion& start, const MeshRegion& from, Reach reach, MeshRegion& best,
+                       std::vector<MeshRegion>* made) {
+  for (MeshRegion& there : promising(from, reach)) {
+    there.relax(kHopeless * best.cost());
+    if (there.cost() < best.cost() && there.is_better_than(start)) best = there;
+    if (made) made->push_back(std::move(there));
+  }
 }
 
 /// What moves and flips alone leave, where no triangle is poor then, or the best of what a change more leaves, the
-/// nearest ones first. None where that is not enough.
+/// nearest ones first; where few triangles of the mesh are poor, of two changes. None where that is not enough.
 std::optional<MeshRegion> PatchMesh::improved(const MeshRegion& start) const {
   MeshRegion relaxed = start;
   relaxed.relax();
@@ -209,11 +226,13 @@ std::optional<MeshRegion> PatchMesh::improved(const MeshRegion& start) const {
     return region.cost() < (may_renumber ? kLess * start.cost() : kLessIfSteady * relaxed.cost());
   };
   MeshRegion best = relaxed;
+  std::vector<MeshRegion> made;
   for (const Reach reach : {Reach::corners, Reach::beyond}) {
-    for (MeshRegion& there : promising(relaxed, reach)) {
-      there.relax(kHopeless * best.cost());
-      if (there.cost() < best.cost() && there.is_better_than(start)) best = std::move(there);
-    }
+    search(start, relaxed, reach, best, are_last_ ? &made : nullptr);
+    if (is_worth_it(best)) return best;
+  }
+  for (const MeshRegion& first : cheapest(std::move(made), kMostTries)) {
+    for (const Reach reach : {Reach::corners, Reach::beyond}) search(start, first, reach, best, nullptr);
     if (is_worth_it(best)) return best;
   }
   return relaxed_if_enough();
@@ -240,6 +259,8 @@ std::vector<uint32_t> PatchMesh::take_apart(std::vector<uint32_t>& triangles) co
 bool PatchMesh::improve(std::vector<uint32_t> triangles) {
   keep_apart(lookup_->cut().longest_edge_q8);
   bool has_changed = false;
+  are_last_ = triangles.size() <= kFewLeft;
+  if (are_last_) std::fill(is_hopeless_.begin(), is_hopeless_.end(), char(0));
   while (!triangles.empty()) {
     const auto is_done = [&](uint32_t t) { return sine(this->triangles()[t]) >= kPoorSine || is_hopeless_[t]; };
     triangles.erase(std::remove_if(triangles.begin(), triangles.end(), is_done), triangles.end());

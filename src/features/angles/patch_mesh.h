@@ -82,6 +82,8 @@ class PatchMesh : public EditableMesh {
   static std::vector<Change> changes_of(const MeshRegion& region, Reach reach);
   static bool make_change(MeshRegion& region, const Change& change);
   static std::vector<MeshRegion> promising(const MeshRegion& region, Reach reach);
+  static void search(const MeshRegion& start, const MeshRegion& from, Reach reach, MeshRegion& best,
+                     std::vector<MeshRegion>* made);
   std::optional<MeshRegion> improved(const MeshRegion& start) const;
   std::optional<MeshRegion> recounted(const MeshRegion& start) const;
 
@@ -92,6 +94,7 @@ class PatchMesh : public EditableMesh {
   std::vector<uint32_t> replaced_at_;  ///< per vertex when one of its triangles was replaced last
   uint32_t clock_ = 0;                 ///< edges looked at together so far
   JoinOptions options_;
+  bool are_last_ = false;   ///< few triangles of the mesh are poor
   int64_t tries_ = 0;       ///< that are left
   int64_t left_alone_ = 0;  ///< triangles without one
 };
