@@ -5,6 +5,7 @@
 
 #include "features/known_curves.h"
 #include "features/mesh/remove_slivers.h"
+#include "geometry/box.h"
 #include "geometry/half_edges.h"
 #include "support/catch.h"
 
@@ -101,6 +102,11 @@ TriangleSoup bevelled_cube(double width) {
   return soup;
 }
 
+LatticeFrame frame_of(const FeatureMesh& mesh) {
+  const auto box = box_of(mesh.vertices);
+  return LatticeFrame::around(box.min, box.max, 1024);
+}
+
 double volume_of(const FeatureMesh& mesh) {
   double volume = 0;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -117,18 +123,18 @@ TEST_CASE("slivers: triangles without area along an edge go, and the edge is the
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({.5, 1.1, 1.2, 2.7, 3.9}));
   const size_t triangles = mesh.triangles.size(), vertices = mesh.vertices.size();
   REQUIRE(least_height_in(mesh) == 0);
-  CHECK(remove_slivers(mesh, {}, 0, context));
+  CHECK(remove_slivers(mesh, frame_of(mesh), {}, 0, context));
   CHECK(mesh.triangles.size() == triangles);
   CHECK(mesh.vertices.size() == vertices);
   CHECK(is_closed(mesh));
   CHECK(least_height_in(mesh) > least_height_world(mesh));
   CHECK(counts_of(find_curves(mesh, {CreaseMode::automatic, 0, .2})) == Counts{12, 0, 0, 0, 8});
-  CHECK_FALSE(remove_slivers(mesh, {}, 0, context));
+  CHECK_FALSE(remove_slivers(mesh, frame_of(mesh), {}, 0, context));
 }
 
 TEST_CASE("slivers: edges shorter than rounding tells are collapsed", "[features][unit]") {
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({1, 1 + 1e-6, 1 + 2e-6, 3, 4 - 1e-6}));
-  CHECK(remove_slivers(mesh, {}, 0, context));
+  CHECK(remove_slivers(mesh, frame_of(mesh), {}, 0, context));
   CHECK(mesh.vertices.size() == 8 + 2);
   CHECK(mesh.triangles.size() == 2 * mesh.vertices.size() - 4);
   CHECK(mesh.source_face.size() == mesh.triangles.size());
@@ -140,7 +146,7 @@ TEST_CASE("slivers: edges that are to stay do", "[features][unit]") {
   FeatureMesh mesh = weld_for_features(box_with_points_on_edge({1, 1 + 1e-6, 3}));
   const WorldPoint left{0, 0, 1}, right{4, 0, 1};
   CHECK(has_edge(mesh, edge_key(vertex_at(mesh, left), vertex_at(mesh, right))));
-  remove_slivers(mesh, {edge_key(vertex_at(mesh, left), vertex_at(mesh, right))}, 0, context);
+  remove_slivers(mesh, frame_of(mesh), {edge_key(vertex_at(mesh, left), vertex_at(mesh, right))}, 0, context);
   CHECK(is_closed(mesh));
   CHECK(has_edge(mesh, edge_key(vertex_at(mesh, left), vertex_at(mesh, right))));
 }
@@ -149,7 +155,7 @@ TEST_CASE("slivers: a round edge in steps that are far shorter than rounding tel
           "[features][unit]") {
   FeatureMesh mesh = weld_for_features(cylinder(3000, 1, 1));
   mesh.rounding_world = .04 / 16;  // twenty steps
-  CHECK(remove_slivers(mesh, {}, 0, context));
+  CHECK(remove_slivers(mesh, frame_of(mesh), {}, 0, context));
   CHECK(is_closed(mesh));
   CHECK(mesh.vertices.size() < 1000);
   CHECK(volume_of(mesh) == Approx(kTau / 2).epsilon(.002));
@@ -159,14 +165,14 @@ TEST_CASE("slivers: bevels narrower than a 32nd of an edge become one crease eac
           "[features][unit]") {
   for (const double edge : {.2, 0.}) {
     FeatureMesh mesh = weld_for_features(bevelled_cube(.002));
-    CHECK(remove_slivers(mesh, {}, edge, context) == (edge > 0));
+    CHECK(remove_slivers(mesh, frame_of(mesh), {}, edge, context) == (edge > 0));
     CHECK(is_closed(mesh));
     CHECK(mesh.vertices.size() == (edge > 0 ? 8 : 24));
     CHECK(volume_of(mesh) == Approx(8).epsilon(.005));
     if (edge > 0) CHECK(counts_of(find_curves(mesh, {CreaseMode::automatic, 0, edge})) == Counts{12, 0, 0, 0, 8});
   }
   FeatureMesh wide = weld_for_features(bevelled_cube(.02));
-  CHECK_FALSE(remove_slivers(wide, {}, .2, context));
+  CHECK_FALSE(remove_slivers(wide, frame_of(wide), {}, .2, context));
   CHECK(wide.vertices.size() == 24);
 }
 
@@ -177,14 +183,14 @@ TEST_CASE("slivers: bevels whose edges are to stay do", "[features][unit]") {
     for (size_t i = 0; i < 3; ++i) kept.push_back(edge_key(t[i], t[(i + 1) % 3]));
   std::sort(kept.begin(), kept.end());
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
-  CHECK_FALSE(remove_slivers(mesh, kept, .2, context));
+  CHECK_FALSE(remove_slivers(mesh, frame_of(mesh), kept, .2, context));
 }
 
 TEST_CASE("slivers: sides of a wall thinner than a 32nd of an edge are not joined", "[features][unit]") {
   for (const double thickness : {.004, .001}) {
     FeatureMesh mesh = weld_for_features(cylinder(48, 1, thickness));
     const double volume = volume_of(mesh);
-    remove_slivers(mesh, {}, .2, context);
+    remove_slivers(mesh, frame_of(mesh), {}, .2, context);
     CHECK(is_closed(mesh));
     CHECK(volume_of(mesh) == Approx(volume).epsilon(.01));
   }
@@ -193,14 +199,14 @@ TEST_CASE("slivers: sides of a wall thinner than a 32nd of an edge are not joine
 TEST_CASE("slivers: narrow facets of a round part are no strips", "[features][unit]") {
   FeatureMesh mesh = weld_for_features(cylinder(2000, 1, 1));
   const auto triangles = mesh.triangles;
-  CHECK_FALSE(remove_slivers(mesh, {}, .2, context));
+  CHECK_FALSE(remove_slivers(mesh, frame_of(mesh), {}, .2, context));
   CHECK(mesh.triangles == triangles);
 }
 
 TEST_CASE("slivers: a mesh without any is left as it is", "[features][unit]") {
   FeatureMesh ball = weld_for_features(shapes::sphere({0, 0, 0}, 1, 24));
   const auto triangles = ball.triangles;
-  CHECK_FALSE(remove_slivers(ball, {}, 0, context));
+  CHECK_FALSE(remove_slivers(ball, frame_of(ball), {}, 0, context));
   CHECK(ball.triangles == triangles);
 }
 

@@ -29,9 +29,8 @@ constexpr double kRoundedAway = 1e-9;          // sums of two angles of 180 degr
 constexpr double kParallel = .999;             // cosine between normals in one plane
 constexpr size_t kMostAround = 1024;           // triangles around a vertex that is changed
 constexpr size_t kChangesBetweenLooks = 4096;  // whether the run goes on
-constexpr size_t kMostChanges = 64;         // a thin triangle, far more than it takes; rounding may not make it endless
-constexpr double kStepsOfExtent = 1 << 20;  // where nothing was rounded
-constexpr double kMostCells = 8;            // that a triangle's box meets, in the mean
+constexpr size_t kMostChanges = 64;  // a thin triangle, far more than it takes; rounding may not make it endless
+constexpr double kMostCells = 8;     // that a triangle's box meets, in the mean
 
 double height_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
   const double longest = std::sqrt(std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)}));
@@ -59,23 +58,15 @@ bool turns_at_longest(const std::array<WorldPoint, 3>& corner, AreaBeside area_b
   return false;
 }
 
-/// The steps that coordinates were rounded to, or finer ones than matter.
-struct Steps {
-  explicit Steps(const FeatureMesh& mesh) {
-    const auto box = box_of(mesh.vertices);
-    origin = box.min;
-    size_world = mesh.rounding_world > 0 ? 2 * mesh.rounding_world : longest_side(box) / kStepsOfExtent;
-  }
-
-  WorldPoint origin;
-  double size_world;
-};
+/// In steps, half a step off: without fractions that is the place that the frame snaps to.
+WorldPoint on_lattice(const WorldPoint& p, const LatticeFrame& frame) {
+  return (kOneVoxelQ8 / frame.voxel_size) * (p - frame.origin) + WorldPoint{.5, .5, .5};
+}
 
 /// Vertices at edges that have no two sides, or are kept, are corners: they stay.
-EditableMesh editable(const FeatureMesh& mesh, MeshTwins twins, const Steps& steps) {
+EditableMesh editable(const FeatureMesh& mesh, MeshTwins twins, const LatticeFrame& frame) {
   std::vector<RegionVertex> vertices(mesh.vertices.size());
-  for (size_t v = 0; v < vertices.size(); ++v)
-    vertices[v].position = (1 / steps.size_world) * (mesh.vertices[v] - steps.origin);
+  for (size_t v = 0; v < vertices.size(); ++v) vertices[v].position = on_lattice(mesh.vertices[v], frame);
   std::vector<RegionTriangle> triangles(mesh.triangles.size());
   std::vector<uint64_t> on_curves;
   for (uint32_t h = 0; h < twins.of.size(); ++h) {
@@ -102,7 +93,7 @@ class Slivers : private EditableMesh {
  public:
   /// Heights in steps.
   Slivers(EditableMesh mesh, double least_height, double strip_height)
-      : EditableMesh(std::move(mesh)), least_(least_height), strip_(strip_height), stays_(vertices().size(), 0) {
+      : EditableMesh(std::move(mesh)), least_(least_height), strip_(strip_height), reach_(vertices().size(), 0) {
     keep_apart(cell());
   }
 
@@ -228,7 +219,7 @@ class Slivers : private EditableMesh {
     std::stable_sort(edge.begin(), edge.end(), [&](size_t i, size_t j) { return length_of(t, i) > length_of(t, j); });
     const double most = is_of_strip(t) ? std::max(least_, strip_) : least_;
     if (const std::optional<Flap> shortest = flap(t, edge[2]);
-        shortest && length_of(t, edge[2]) < most && collapse_either(*shortest))
+        shortest && length_of(t, edge[2]) < most && collapse_either(*shortest, most))
       return true;
     for (const size_t i : edge) {
       const std::optional<Flap> f = flap(t, i);
@@ -252,7 +243,7 @@ class Slivers : private EditableMesh {
     const auto faces_so = [&](const WorldPoint& n) { return dot(n, side) > most_turn * length(n) * length(side); };
     if (!faces_so(doubled_area(at(f.a), at(f.d), at(f.c))) || !faces_so(doubled_area(at(f.b), at(f.c), at(f.d))))
       return false;
-    return flat || !has_back_of(side, f.c);
+    return flat || height(f.triangle) < least_ || !has_back_of(side, f.c);
   }
 
   /// Whether the angles at c and d are more than 180 degrees together.
@@ -307,14 +298,16 @@ class Slivers : private EditableMesh {
     return true;
   }
 
-  bool collapse_either(const Flap& f) {
+  bool collapse_either(const Flap& f, double most) {
     const bool starts_at_fewer = around(f.a).size() <= around(f.b).size();
     const uint32_t first = starts_at_fewer ? f.a : f.b, second = starts_at_fewer ? f.b : f.a;
-    return collapse(first, second) || collapse(second, first);
+    return collapse(first, second, most) || collapse(second, first, most);
   }
-  bool collapse(uint32_t gone, uint32_t into) {
-    if (stays_[gone] || !may_change_around(gone) || !may_change_around(into) || are_sides_of_wall(gone, into))
-      return false;
+  /// Where nothing is taken as far as `most`.
+  bool collapse(uint32_t gone, uint32_t into, double most) {
+    const double way = length(at(into) - at(gone)), reach = reach_[gone] + way;
+    if (reach >= most || !may_change_around(gone) || !may_change_around(into)) return false;
+    if (way >= least_ && are_sides_of_wall(gone, into)) return false;
     const auto turns_little = [&] {
       for (size_t i = 0; i < change_.made.size(); ++i) {
         const WorldPoint was = area_of(change_.number[i]), now = normal(change_.made[i]);
@@ -323,13 +316,13 @@ class Slivers : private EditableMesh {
       return true;
     };
     if (!EditableMesh::collapse(gone, into, change_, turns_little)) return false;
-    stays_[into] = 1;  // what was taken into it would go farther with it
+    reach_[into] = std::max(reach_[into], reach);
     for (const uint32_t t : change_.number) wait_if_thin(t);
     return true;
   }
 
   double least_, strip_;
-  std::vector<uint8_t> stays_;     ///< per vertex
+  std::vector<double> reach_;      ///< per vertex how far what was taken into it was away, at most
   std::vector<uint32_t> waiting_;  ///< triangles
   MeshChange change_;
 };
@@ -375,8 +368,8 @@ double least_height_world(const FeatureMesh& mesh) {
   return std::max(kThinHeight * extent, kThinRoundings * mesh.rounding_world);
 }
 
-bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, double edge_length_world,
-                    const Context& context) {
+bool remove_slivers(FeatureMesh& mesh, const LatticeFrame& frame, const std::vector<uint64_t>& kept,
+                    double edge_length_world, const Context& context) {
   const Heights heights{least_height_world(mesh), kStrip * edge_length_world};
   std::vector<uint32_t> found = narrow_triangles(mesh, heights);
   if (found.empty()) return false;
@@ -384,9 +377,9 @@ bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, double
   const auto is_none = [&](uint32_t t) { return !is_sliver(mesh, twins, t, heights.least); };
   found.erase(std::remove_if(found.begin(), found.end(), is_none), found.end());
   if (found.empty()) return false;
-  const Steps steps(mesh);
-  Slivers slivers(editable(mesh, std::move(twins), steps), heights.least / steps.size_world,
-                  heights.strip / steps.size_world);
+  const double steps_of_world = kOneVoxelQ8 / frame.voxel_size;
+  Slivers slivers(editable(mesh, std::move(twins), frame), steps_of_world * heights.least,
+                  steps_of_world * heights.strip);
   const bool has_changed = slivers.remove(std::move(found), context);
   if (has_changed) slivers.put_into(mesh);
   return has_changed;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "features/mesh/feature_mesh.h"
+#include "isoshell/advanced/lattice.h"
 #include "isoshell/backend.h"
 
 namespace isoshell {
@@ -18,10 +19,10 @@ double least_height_world(const FeatureMesh& mesh);
 /// edges they would be triangles with angles of two degrees or less. Vertices do not move, and none is taken into one
 /// farther away than these heights; their order stays. `kept`: keys of edges that stay with their ends, ascending.
 /// `edge_length_world`: 0 where strips are to stay. A triangle stays where a change would fold the surface, join sides
-/// of it or make triangles meet that did not, or where more than a thousand triangles meet. Result: whether anything
-/// changed. Cost: a pass over the triangles where none is thin, else a sort of the half-edges, and a look at the
-/// triangles around each change. Throws: interrupted.
-bool remove_slivers(FeatureMesh& mesh, const std::vector<uint64_t>& kept, double edge_length_world,
-                    const Context& context);
+/// of it or make triangles meet on the lattice that did not, or where more than a thousand triangles meet. Result:
+/// whether anything changed. Cost: a pass over the triangles where none is thin, else a sort of the half-edges, and a
+/// look at the triangles around each change. Throws: interrupted.
+bool remove_slivers(FeatureMesh& mesh, const LatticeFrame& frame, const std::vector<uint64_t>& kept,
+                    double edge_length_world, const Context& context);
 
 }  // namespace isoshell

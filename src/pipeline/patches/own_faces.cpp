@@ -47,7 +47,7 @@ void unite_own_faces(SearchedSurface& searched, const PreparedSurface& p, Remesh
   run_with_threads(context, [&] {
     searched.mesh = weld_for_features(whole);
     searched.mesh.rounding_world = rounding_world;
-    remove_slivers(searched.mesh, {}, edge_of_strips_world(p), context);
+    remove_slivers(searched.mesh, p.surface.frame, {}, edge_of_strips_world(p), context);
   });
   searched.creases.reset();
 }

@@ -140,7 +140,7 @@ SearchedSurface searched_surface(const PreparedSurface& p, const std::vector<std
     std::vector<uint64_t> keys;
     for (const auto& [u, v] : vertices_of(kept, alone.mesh, p.surface.frame)) keys.push_back(edge_key(u, v));
     std::sort(keys.begin(), keys.end());
-    alone.had_slivers = remove_slivers(alone.mesh, keys, edge_of_strips_world(p), context);
+    alone.had_slivers = remove_slivers(alone.mesh, p.surface.frame, keys, edge_of_strips_world(p), context);
   });
   return alone;
 }

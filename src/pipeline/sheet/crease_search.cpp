@@ -81,8 +81,8 @@ CreaseSearch::CreaseSearch(const LatticeSurface& surface, const CurveOptions& op
   auto search = [this, copied = std::move(copied), on_device, options, &context]() mutable {
     const LatticeSurface here = on_device.copy(std::move(copied));
     SearchedSurface found{feature_mesh_of(here, context), false, {}};
-    found.had_slivers =
-        run_with_threads(context, [&] { return remove_slivers(found.mesh, {}, options.edge_length_world, context); });
+    found.had_slivers = run_with_threads(
+        context, [&] { return remove_slivers(found.mesh, here.frame, {}, options.edge_length_world, context); });
     check_cancel(context, "features");
     found.creases = run_with_threads(context, [&] { return creases_unless_refused(found.mesh, options); });
     has_found_curves_ = found.creases && !found.creases->curve_edges.empty();
