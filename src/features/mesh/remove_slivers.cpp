@@ -15,20 +15,20 @@
 namespace isoshell {
 namespace {
 
-constexpr double kThinHeight = 1e-5;           // of the largest extent: what floats round is 100 times smaller
-constexpr double kThinRoundings = 16;          // a triangle as high turns by 5 degrees where its vertices are rounded
-constexpr double kStrip = 1. / 32;             // of the edge length: the sides of a narrower strip become one crease
-constexpr double kStripIsLonger = 4;           // than it is high
-constexpr double kStripTurns = .85;            // cosine between normals across its longest edge
-constexpr double kAllButLongest = .95;         // of the longest edge
-constexpr double kMostOffPlane = 1. / 16;      // of the least height: what rounding may have moved from a plane
-constexpr double kLeastCosine = .5;            // between normals before and after a change
-constexpr double kFollows = .985;              // beside a strip: the side that it is taken into stays as it lies
-constexpr double kOpposite = -.87;             // cosine between normals of sides that meet at less than 30 degrees
-constexpr double kRoundedAway = 1e-9;          // sums of two angles of 180 degrees, as in grids, are not told from it
-constexpr double kParallel = .999;             // cosine between normals in one plane
-constexpr size_t kMostAround = 1024;           // triangles around a vertex that is changed
-constexpr size_t kChangesBetweenLooks = 4096;  // whether the run goes on
+constexpr double kThinHeight = 1e-5;             // of the largest extent: what floats round is 100 times smaller
+constexpr double kThinRoundings = 16;            // a triangle as high turns by 5 degrees where its vertices are rounded
+constexpr double kStrip = 1. / 32;               // of the edge length: the sides of a narrower strip become one crease
+constexpr double kStripIsLonger = 4;             // than it is high
+constexpr double kStripTurns = .85;              // cosine between normals across its longest edge
+constexpr double kAllButLongest = .95;           // of the longest edge
+constexpr double kMostOffPlane = 1. / 16;        // of the least height: what rounding may have moved from a plane
+constexpr double kLeastCosine = .5;              // between normals before and after a change
+constexpr double kFollows = .985;                // beside a strip: the side that it is taken into stays as it lies
+constexpr double kOpposite = -.87;               // cosine between normals of sides that meet at less than 30 degrees
+constexpr double kRoundedAway = 1e-9;            // sums of two angles of 180 degrees, as in grids, are not told from it
+constexpr double kParallel = .999;               // cosine between normals in one plane
+constexpr size_t kMostAround = 1024;             // triangles around a vertex that is changed
+constexpr size_t kTrianglesBetweenLooks = 4096;  // whether the run goes on
 constexpr size_t kMostChanges = 64;  // a thin triangle, far more than it takes; rounding may not make it endless
 constexpr double kMostCells = 8;     // that a triangle's box meets, in the mean
 
@@ -101,12 +101,12 @@ class Slivers : private EditableMesh {
   bool remove(std::vector<uint32_t> found, const Context& context) {
     waiting_ = with_planes_of(std::move(found));
     std::reverse(waiting_.begin(), waiting_.end());
-    size_t changes = 0;
+    size_t changes = 0, looks = 0;
     for (const size_t most = kMostChanges * waiting_.size(); !waiting_.empty() && changes < most;) {
       const uint32_t t = waiting_.back();
       waiting_.pop_back();
-      if (triangles()[t].is_gone() || !change(t)) continue;
-      if (++changes % kChangesBetweenLooks == 0) check_cancel(context, "features");
+      if (++looks % kTrianglesBetweenLooks == 0) check_cancel(context, "features");
+      if (!triangles()[t].is_gone() && change(t)) ++changes;
     }
     return changes > 0;
   }
@@ -158,7 +158,8 @@ class Slivers : private EditableMesh {
     const RegionTriangle& triangle = triangles()[t];
     if (triangle.curve[edge] != kNone) return {};
     const uint32_t a = triangle.corner[edge], b = triangle.corner[(edge + 1) % 3], c = triangle.corner[(edge + 2) % 3];
-    const uint32_t other = find_around(b, [&](const RegionTriangle& s) { return s.edge_between(b, a) < 3; });
+    const uint32_t fewer = around(a).size() < around(b).size() ? a : b;
+    const uint32_t other = find_around(fewer, [&](const RegionTriangle& s) { return s.edge_between(b, a) < 3; });
     const RegionTriangle& beside = triangles()[other];
     return Flap{a, b, c, beside.corner[(beside.edge_between(b, a) + 2) % 3], t, other, edge};
   }
@@ -287,7 +288,7 @@ class Slivers : private EditableMesh {
   }
 
   bool flip(const Flap& f, bool is_longest) {
-    if (!may_change_around(f.a) || !may_change_around(f.c)) return false;
+    if (!may_change_around(f.c) || !may_change_around(f.d)) return false;
     if (!EditableMesh::flip(f.triangle, f.edge, change_, [&] { return should_flip(f, is_longest); })) return false;
     for (const uint32_t t : {f.triangle, f.other})
       for (size_t i = 0; i < 3; ++i)

@@ -131,7 +131,7 @@ class Coarsening {
     known_.quadric[into].add(known_.quadric[v]);
     mesh_.list_neighbours(into, around_);
     for (const uint32_t w : around_)
-      if (!blocks_ || known_.least[w] == kNever) add(w);  // in a block the others wait for their turn
+      if (!blocks_ || (is_here(w) && known_.least[w] == kNever)) add(w);  // in a block the others wait for their turn
     add(into);
   }
 

@@ -15,7 +15,8 @@ CurveEdges curve_edges(const std::vector<CurvePath>& paths, const std::vector<ui
     for (const uint32_t v : paths[c].vertex)
       if (becomes[v] != kNone && (along.empty() || along.back() != becomes[v])) along.push_back(becomes[v]);
     for (size_t i = 1; i < along.size(); ++i) edges.push_back({edge_key(along[i - 1], along[i]), c});
-    if (paths[c].is_loop && along.back() != along.front()) edges.push_back({edge_key(along.back(), along.front()), c});
+    if (paths[c].is_loop && along.size() > 1 && along.back() != along.front())
+      edges.push_back({edge_key(along.back(), along.front()), c});
   }
   std::sort(edges.begin(), edges.end());
   return edges;

@@ -39,7 +39,7 @@ class FineCells {
     WallMesh mesh;
     std::vector<uint32_t> seed;  ///< per vertex the one that it is, kNone for a fine one
   };
-  /// Vertices that were optimised, or are on curves, are settled. Cost: O(fine triangles), and a sort of the edges of
+  /// Seeds that were optimised, or are on curves, are settled. Cost: O(fine triangles), and a sort of the edges of
   /// curves.
   Mesh mesh() const;
 

@@ -69,7 +69,7 @@ std::vector<RegionTriangle> triangles_of(const CutLookup& lookup, const WallTria
 WallMesh::WallMesh(const CutSurface& cut, const WallTriangles& walls)
     : WallMesh(std::make_shared<CutLookup>(cut), walls) {}
 
-WallMesh::WallMesh(std::shared_ptr<const CutLookup> lookup, const WallTriangles& walls)
+WallMesh::WallMesh(const std::shared_ptr<const CutLookup>& lookup, const WallTriangles& walls)
     : WallMesh(lookup, EditableMesh(vertices_of(*lookup, walls.vertices), triangles_of(*lookup, walls), Size::many)) {}
 
 WallMesh::WallMesh(std::shared_ptr<const CutLookup> lookup, EditableMesh mesh)

@@ -48,7 +48,7 @@ class WallMesh : public EditableMesh {
   bool move(uint32_t v, const RegionVertex& to, MeshChange& change);
 
  private:
-  WallMesh(std::shared_ptr<const CutLookup> lookup, const WallTriangles& walls);
+  WallMesh(const std::shared_ptr<const CutLookup>& lookup, const WallTriangles& walls);
 
   /// 0 for an equilateral triangle that lies as the surface does, and more for others.
   double cost(const RegionTriangle& t) const;

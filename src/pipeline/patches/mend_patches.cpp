@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/copy_product.h"
 #include "core/watched.h"
 #include "features/angles/widen_angles.h"
-#include "features/cutting/cut_piece.h"
-#include "features/mesh/feature_mesh.h"
 #include "features/walls/coarsen.h"
 #include "features/walls/even_out.h"
 #include "features/walls/fine_cells.h"
 #include "features/walls/mesh_faults.h"
 #include "isoshell/readable.h"
 #include "pipeline/defects/inverted_regions.h"
-#include "pipeline/defects/patch_defects.h"
 #include "pipeline/grid/memory_estimate.h"
 #include "pipeline/grid/timed.h"
 #include "pipeline/patches/new_crossings.h"
@@ -119,9 +115,12 @@ JoinedPatches simplified(WallMesh mesh, const JoinOptions& options, const Contex
   PatchMesh patches(lookup, std::move(mesh), options);
   widen(patches, context);
   if (!misses_count(patches.vertex_count(), options)) return patches.joined();
+  const int64_t left_alone = patches.left_alone();
   WallMesh again(lookup, std::move(patches));
   run_with_threads(context, [&] { coarsen(again, options.vertices, context); });
-  return PatchMesh(lookup, std::move(again), options).joined();
+  JoinedPatches joined = PatchMesh(lookup, std::move(again), options).joined();
+  joined.left_alone = left_alone;
+  return joined;
 }
 
 /// The mesh in which as many cells are fine as it takes.
@@ -153,13 +152,18 @@ std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSur
     FaultFinder faults(p, cut, context);
     out.joined = simplified(with_fine_cells(cells, faults, context), options, context);
     std::string why = with_cells.faults.what.empty() ? kWouldIntersect : with_cells.faults.what;
+    int64_t fine_cells = cells.count();
     if (!cells.are_all() && misses_count(out.joined.mesh.position.size(), options)) {
       cells.add_all();
-      out.joined = simplified(cells.mesh().mesh, options, context);
-      why = kTooManyOnCurves;
+      JoinedPatches all = simplified(cells.mesh().mesh, options, context);
+      if (all.mesh.position.size() < out.joined.mesh.position.size() && faults.is_valid(all, out.optimize)) {
+        out.joined = std::move(all);
+        fine_cells = cells.count();
+        why = kTooManyOnCurves;
+      }
     }
     if (!faults.is_valid(out.joined, out.optimize)) return {};
-    if (cells.count() > 0) out.warning = words_of_coarse(cells.count(), int64_t(relaxed.vertices().size()), why);
+    if (fine_cells > 0) out.warning = words_of_coarse(fine_cells, int64_t(relaxed.vertices().size()), why);
     return std::move(out);
   });
 }

@@ -159,7 +159,7 @@ struct MeshOfPatches {
   std::string why_not;
 };
 
-/// Simplifies patches whose relaxed mesh has a tenth more vertices than are wanted, if that is possible.
+/// Simplifies the fine triangles where the relaxed mesh has a tenth more vertices than are wanted, if that helps.
 void meet_count(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed, const PatchOptions& options,
                 JoinedPatches& joined, RemeshReport& report, Context& context) {
   const int64_t wanted = join_options(options).vertices, vertices = joined.mesh.position.size();

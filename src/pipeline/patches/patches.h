@@ -44,7 +44,7 @@ inline JoinOptions join_options(const PatchOptions& options) {
 RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options, Context& context);
 
 /// The mesh of the patches, joined along their curves; its vertices are as many as seeds were relaxed, each place of a
-/// curve counted once, where that is possible. Where triangles intersect, patches are simplified from the fine
+/// curve counted once, where that is possible. Where triangles intersect, cells are simplified from the fine
 /// triangles instead. Where those meet themselves, or so few vertices cannot hold the curves, the same is tried on the
 /// sheet, with the curves laid onto it. None where that fails, too: cells are no disks, or patches touch along edges
 /// that are on no curve: report.features says so. With borders that are kept triangles may intersect where the input's
