@@ -259,8 +259,9 @@ std::vector<uint32_t> PatchMesh::take_apart(std::vector<uint32_t>& triangles) co
 bool PatchMesh::improve(std::vector<uint32_t> triangles) {
   keep_apart(lookup_->cut().longest_edge_q8);
   bool has_changed = false;
+  const bool were_last = are_last_;
   are_last_ = triangles.size() <= kFewLeft;
-  if (are_last_) std::fill(is_hopeless_.begin(), is_hopeless_.end(), char(0));
+  if (are_last_ && !were_last) std::fill(is_hopeless_.begin(), is_hopeless_.end(), char(0));
   while (!triangles.empty()) {
     const auto is_done = [&](uint32_t t) { return sine(this->triangles()[t]) >= kPoorSine || is_hopeless_[t]; };
     triangles.erase(std::remove_if(triangles.begin(), triangles.end(), is_done), triangles.end());

@@ -43,6 +43,7 @@ class PatchMesh : public EditableMesh {
   /// For each of the triangles the change of what is around it that leaves the least cost, where one leaves less.
   /// Result: whether anything was changed. The same for every number of threads.
   bool improve(std::vector<uint32_t> triangles);
+  const JoinOptions& options() const { return options_; }
   /// Poor triangles that were not looked at.
   int64_t left_alone() const { return left_alone_; }
   int64_t surplus() const { return vertex_count() - options_.vertices; }

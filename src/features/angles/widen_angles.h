@@ -10,7 +10,7 @@ namespace isoshell {
 /// follow surface and curves no worse. As many edges are collapsed or split elsewhere, where triangles stay good, until
 /// there are as many vertices as asked for, or as near to that as it goes. Curves stay edges, the topology stays, and
 /// no triangles come to intersect. The same for every number of threads. In host memory. Cost: about a
-/// millisecond a poor triangle, for no more of them than options allow.
+/// millisecond a poor triangle, for no more of them than options allow; some more for the last sixteen.
 void widen(PatchMesh& mesh, const Context& context);
 
 /// The same of patches that are put together first.

@@ -21,7 +21,7 @@ struct RegionVertex {
   Kind kind = Kind::free;
   bool is_inner = true;     ///< all its triangles are in the mesh
   bool is_settled = false;  ///< relaxed: it is where it is to be, and is evened out no more
-  WorldPoint position;      ///< whole steps of 1/256 voxel
+  WorldPoint position;      ///< steps of 1/256 voxel, whole ones in results: the guard leaves fractions out
   uint32_t home = 0;        ///< vertex of the surface; off the free ones a copy of their place
   uint32_t curve = 0;       ///< that a vertex is on, of CutSurface::curves
   size_t at = 0;            ///< its place on it

@@ -20,8 +20,9 @@ double least_height_world(const FeatureMesh& mesh);
 /// farther away than these heights; their order stays. `kept`: keys of edges that stay with their ends, ascending.
 /// `edge_length_world`: 0 where strips are to stay. A triangle stays where a change would fold the surface, join sides
 /// of it or make triangles meet on the lattice that did not, or where more than a thousand triangles meet. Result:
-/// whether anything changed. Cost: a pass over the triangles where none is thin, else a sort of the half-edges, and a
-/// look at the triangles around each change. Throws: interrupted.
+/// whether anything changed. Cost: a pass over the triangles where none is thin, else a sort of the half-edges, all
+/// triangles put into an EditableMesh whose triangles are kept apart, and a look at those around each change. Throws:
+/// interrupted.
 bool remove_slivers(FeatureMesh& mesh, const LatticeFrame& frame, const std::vector<uint64_t>& kept,
                     double edge_length_world, const Context& context);
 

@@ -52,9 +52,9 @@ struct Known {
 /// Of some vertices: those of a block, or all.
 class Coarsening {
  public:
-  Coarsening(WallMesh& mesh, Known& known, WallMesh::Shapes shapes, double short_sq_q8,
+  Coarsening(WallMesh& mesh, Known& known, WallMesh::Shapes shapes, double short_square,
              const WallBlocks* blocks = nullptr, size_t block = 0)
-      : mesh_(mesh), known_(known), shapes_(shapes), short_sq_q8_(short_sq_q8), blocks_(blocks), block_(block) {}
+      : mesh_(mesh), known_(known), shapes_(shapes), short_square_(short_square), blocks_(blocks), block_(block) {}
 
   void add(uint32_t v) {
     if (!is_here(v)) return;
@@ -124,7 +124,7 @@ class Coarsening {
     if (ways_.empty()) return;
     if (ways_[0].first > expected) return push(v, ways_[0].first);
     const auto way = std::find_if(ways_.begin(), ways_.end(), [&](const auto& w) {
-      return mesh_.collapse(v, w.second, scratch_, shapes_, short_sq_q8_);
+      return mesh_.collapse(v, w.second, scratch_, shapes_, short_square_);
     });
     if (way == ways_.end()) return;  // until something around it changes
     const uint32_t into = way->second;
@@ -138,7 +138,7 @@ class Coarsening {
   WallMesh& mesh_;
   Known& known_;
   const WallMesh::Shapes shapes_;
-  const double short_sq_q8_;
+  const double short_square_;
   const WallBlocks* blocks_;  ///< null: everything is here
   size_t block_;
   std::priority_queue<Entry> queue_;

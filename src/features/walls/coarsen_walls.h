@@ -17,4 +17,11 @@ inline WallTriangles all_triangles_of(const CutSurface& cut) {
 PatchMesh coarsen_walls(const CutSurface& cut, const WallTriangles& walls, const JoinOptions& options,
                         const Context& context);
 
+/// Widens angles; where vertices on curves are then a tenth more than asked for, the count goes before angles. The mesh
+/// of a frame that follows another keeps them.
+JoinedPatches widened_to_count(PatchMesh mesh, const Context& context);
+/// The same of patches that are put together first.
+JoinedPatches widened_to_count(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,
+                               const Context& context);
+
 }  // namespace isoshell

@@ -89,11 +89,6 @@ void FineCells::add(const std::vector<uint32_t>& seeds) {
   fine_count_ = std::count(is_fine_.begin(), is_fine_.end(), 1);
 }
 
-void FineCells::add_all() {
-  std::fill(is_fine_.begin(), is_fine_.end(), char(1));
-  fine_count_ = int64_t(is_fine_.size());
-}
-
 /// Those in which a triangle has a corner whose cell is fine: there the dual counts, which the fine triangles fit.
 std::vector<char> FineCells::active_groups() const {
   std::vector<char> is_active(changed_.size(), 0);

@@ -30,8 +30,6 @@ class FineCells {
   uint32_t seed_of(uint32_t vertex) const { return joined_[vertex]; }
   /// From now on the cells of these seeds are left as they are, and those beside them. Cost: O(fine triangles).
   void add(const std::vector<uint32_t>& seeds);
-  void add_all();
-  bool are_all() const { return fine_count_ == int64_t(is_fine_.size()); }
   /// How many cells are left as they are.
   int64_t count() const { return fine_count_; }
 

@@ -121,7 +121,8 @@ bool WallMesh::is_sound(const RegionTriangle& t) const {
   return lookup_->cosine(*this, t) > 0 && sine(t) >= kLeastSine;
 }
 
-bool WallMesh::collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes shapes, double short_sq_q8) {
+bool WallMesh::collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes shapes, double short_square) {
+  const double short_sq_q8 = short_square * aimed_at(into) * aimed_at(into);
   return EditableMesh::collapse(gone, into, change, [&] {
     for (size_t i = 0; i < change.made.size(); ++i) {
       const RegionTriangle& made = change.made[i];

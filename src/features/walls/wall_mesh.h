@@ -23,7 +23,7 @@ struct WallTriangles {
 };
 
 /// An EditableMesh whose triangles are kept apart. No split, and no collapse with Shapes::good, turns a triangle over
-/// or makes a needle of it; flips and moves are made where they cost less.
+/// or makes a needle of it, unless it is short; flips and moves are made where they cost less.
 class WallMesh : public EditableMesh {
  public:
   /// The fine mesh and `cut` must outlive it. Cost: O(fine triangles), and a sort of the edges of curves.
@@ -39,8 +39,10 @@ class WallMesh : public EditableMesh {
   /// What triangles a collapse may make: no worse ones than said above, or any on the side of the surface that they
   /// were on.
   enum class Shapes { good, any };
-  /// `short_sq_q8`: triangles whose squared edges are shorter go on being collapsed, and may be needles.
-  bool collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes shapes = Shapes::good, double short_sq_q8 = 0);
+  /// `short_square`: triangles whose squared edges are shorter, in terms of the length aimed at, go on being collapsed,
+  /// and may be needles.
+  bool collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes shapes = Shapes::good,
+                double short_square = 0);
   bool split(uint32_t u, uint32_t v, const RegionVertex& middle, MeshChange& change);
   /// `cost_of_valence`: of the square by which the triangles of a vertex are more or fewer than those of a regular
   /// mesh, which lets flips pass where they cost a little.

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/watched.h"
-#include "features/angles/widen_angles.h"
 #include "features/walls/coarsen.h"
+#include "features/walls/coarsen_walls.h"
 #include "features/walls/even_out.h"
 #include "features/walls/fine_cells.h"
 #include "features/walls/mesh_faults.h"
@@ -19,9 +19,6 @@
 namespace isoshell {
 namespace {
 
-constexpr const char* kTooManyOnCurves = "curves take too many vertices for their edges to be as long as others";
-constexpr const char* kWouldIntersect = "triangles would intersect";
-
 bool memory_allows(const CutSurface& cut, const Context& context) {
   const double bytes = kBytesPerFinePoint * double(cut.fine->position.size());
   return context.memory_limit_bytes <= 0 || bytes <= double(context.memory_limit_bytes);
@@ -29,7 +26,8 @@ bool memory_allows(const CutSurface& cut, const Context& context) {
 
 std::string words_of_coarse(int64_t cells, int64_t all, const std::string& why) {
   return "around " + std::to_string(cells) + " of " + counted(all, "vertex", "vertices") +
-         " edges were collapsed and flipped, not relaxed, and triangles are less even: " + why;
+         " edges were collapsed and flipped, not relaxed, and triangles are less even" +
+         (why.empty() ? "" : ": " + why);
 }
 
 /// Finds what keeps a mesh from being valid.
@@ -100,27 +98,13 @@ class FaultFinder {
   NewCrossings crossings_;
 };
 
-bool misses_count(int64_t vertices, const JoinOptions& options) {
-  return vertices > options.vertices && !CountReport{options.vertices, vertices, {}}.is_near();
-}
-
-/// With as many vertices as asked for, as far as the guard allows it. Where angles were widened by vertices on curves
-/// that are too many, the count goes before angles.
 JoinedPatches simplified(WallMesh mesh, const JoinOptions& options, const Context& context) {
   auto lookup = mesh.shared_lookup();
   run_with_threads(context, [&] {
     coarsen(mesh, options.vertices, context);
     even_out(mesh, options.vertices, context);
   });
-  PatchMesh patches(lookup, std::move(mesh), options);
-  widen(patches, context);
-  if (!misses_count(patches.vertex_count(), options)) return patches.joined();
-  const int64_t left_alone = patches.left_alone();
-  WallMesh again(lookup, std::move(patches));
-  run_with_threads(context, [&] { coarsen(again, options.vertices, context); });
-  JoinedPatches joined = PatchMesh(lookup, std::move(again), options).joined();
-  joined.left_alone = left_alone;
-  return joined;
+  return widened_to_count(PatchMesh(std::move(lookup), std::move(mesh), options), context);
 }
 
 /// The mesh in which as many cells are fine as it takes.
@@ -151,19 +135,8 @@ std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSur
     cells.add(seeds);
     FaultFinder faults(p, cut, context);
     out.joined = simplified(with_fine_cells(cells, faults, context), options, context);
-    std::string why = with_cells.faults.what.empty() ? kWouldIntersect : with_cells.faults.what;
-    int64_t fine_cells = cells.count();
-    if (!cells.are_all() && misses_count(out.joined.mesh.position.size(), options)) {
-      cells.add_all();
-      JoinedPatches all = simplified(cells.mesh().mesh, options, context);
-      if (all.mesh.position.size() < out.joined.mesh.position.size() && faults.is_valid(all, out.optimize)) {
-        out.joined = std::move(all);
-        fine_cells = cells.count();
-        why = kTooManyOnCurves;
-      }
-    }
     if (!faults.is_valid(out.joined, out.optimize)) return {};
-    if (fine_cells > 0) out.warning = words_of_coarse(fine_cells, int64_t(relaxed.vertices().size()), why);
+    out.warning = words_of_coarse(cells.count(), int64_t(relaxed.vertices().size()), with_cells.faults.what);
     return std::move(out);
   });
 }

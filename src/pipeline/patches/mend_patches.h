@@ -18,11 +18,10 @@ struct MendedPatches {
 
 /// The joined mesh of relaxed patches with as many vertices as are asked for. Cells with faults, and those beside them,
 /// are simplified from the fine triangles instead, and so are those that the fine ones come to meet: in the end
-/// triangles intersect where those of the input do, if anywhere. All cells are where curves have too many vertices:
-/// they lose these while the triangles beside them are fine. None where fine triangles intersect or a region is inside
-/// out, and where the memory limit does not allow it. `report`: of times alone. Cost: dual and optimisation once more,
-/// that of coarsening the fine triangles of these cells, and for each time that there are more a pass over all fine
-/// triangles.
+/// triangles intersect where those of the input do, if anywhere. None where fine triangles intersect or a region is
+/// inside out, and where the memory limit does not allow it. `report`: of times alone. Cost: dual and optimisation once
+/// more, that of coarsening the fine triangles of these cells, and for each time that there are more a pass over all
+/// fine triangles.
 std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed,
                                           const PatchOptions& options, RemeshReport& report, Context& context);
 

@@ -18,7 +18,7 @@ struct PatchFaults {
 struct MeshWithCells {
   SeededMesh made;
   std::vector<TriangleIndices> dual;  ///< of the vertices, as their cells meet: before edges were flipped
-  std::vector<uint32_t> cell;         ///< per vertex of the surface the vertex whose cell it is in; kNone: of none
+  std::vector<uint32_t> cell;         ///< per vertex of the surface the vertex whose cell it is in
   std::vector<char> is_optimized;     ///< per patch: one with cells that are no disks is not
   PatchFaults faults;
 };

@@ -7,11 +7,11 @@
 #include "core/copy_product.h"
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
-#include "features/angles/widen_angles.h"
 #include "features/curves/find_curves.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/edge_subdivision.h"
 #include "features/mesh/remove_slivers.h"
+#include "features/walls/coarsen_walls.h"
 #include "geometry/half_edges.h"
 #include "geometry/triangle_grid.h"
 #include "geometry/world_vector.h"
@@ -159,20 +159,6 @@ struct MeshOfPatches {
   std::string why_not;
 };
 
-/// Simplifies the fine triangles where the relaxed mesh has a tenth more vertices than are wanted, if that helps.
-void meet_count(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed, const PatchOptions& options,
-                JoinedPatches& joined, RemeshReport& report, Context& context) {
-  const int64_t wanted = join_options(options).vertices, vertices = joined.mesh.position.size();
-  if (vertices <= wanted || CountReport{wanted, vertices, {}}.is_near()) return;
-  std::optional<MendedPatches> simplified;
-  failure_reason([&] {
-    simplified = mend_patches(p, cut, relaxed, options, report, context);
-    return std::string();
-  });
-  if (simplified && simplified->joined.mesh.position.size() < vertices)
-    joined = accepted(std::move(*simplified), report);
-}
-
 MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
                               const PatchOptions& options, RemeshReport& report, Context& context) {
   MeshOfPatches out;
@@ -181,9 +167,8 @@ MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const Cu
     const PatchFaults faults = mesh_patches(p, *cut, made, options, report, context);
     if (!faults.what.empty() && options.previous) return faults.what;
     if (faults.what.empty()) {
-      out.joined =
-          timed(report, "angles", context, [&] { return join_and_widen(*cut, made, join_options(options), context); });
-      if (!options.previous) meet_count(p, *cut, relaxed, options, out.joined, report, context);
+      out.joined = timed(report, "angles", context,
+                         [&] { return widened_to_count(*cut, made, join_options(options), context); });
     } else if (auto mended = mend_patches(p, *cut, relaxed, options, report, context)) {
       out.joined = accepted(std::move(*mended), report);
     } else {

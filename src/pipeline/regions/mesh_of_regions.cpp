@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/copy_product.h"
-#include "features/angles/widen_angles.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/refine_mesh.h"
 #include "features/walls/coarsen_walls.h"
@@ -110,7 +109,7 @@ std::string join_relaxed(const PreparedSurface& p, SeededMesh& made, const Patch
   const SeedSet relaxed = host_copy(made.seeds);
   const PatchFaults faults = mesh_patches(p, cut, made, in_patches, report, context);
   if (faults.what.empty()) {
-    joined = timed(report, "angles", context, [&] { return join_and_widen(cut, made, options, context); });
+    joined = timed(report, "angles", context, [&] { return widened_to_count(cut, made, options, context); });
     return has_inverted(cut, joined) ? "a region would be inside out" : "";
   }
   std::optional<MendedPatches> mended = mend_patches(p, cut, relaxed, in_patches, report, context);
