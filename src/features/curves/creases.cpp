@@ -21,9 +21,13 @@ constexpr int64_t kMostToGrow = 64;        // edges around a vertex: where more 
 constexpr double kMostBeside = .51;        // of a good chain; one side may turn, however much, when the other is flat
 constexpr double kMostBesideInPart = .75;  // of a crease of a component that has creases: both sides may be round
 constexpr double kLeastGoodShare = .75;  // of a component that has creases: crisp parts have .76 to 1, scans up to .62
-constexpr double kNearlyAll = .98;       // crisp parts have 1, a pool with a rim .72 to .95 when a drop falls into it
-constexpr size_t kParts = 12;            // in which chains are judged
-constexpr double kWalkInFaceSizes = 4;   // at least: roots of the area of the face beside the edge
+constexpr double kLong = 4;              // edges of the result, and of the input
+constexpr double kStrongDegrees = 70;    // in the mean: a long chain that turns so between flat sides is a crease
+constexpr double kMostBesideStrong = .35;  // of it
+constexpr double kLeastStrongShare = .15;  // of a component that has creases: scans have up to .1, thin round parts .25
+constexpr double kNearlyAll = .98;         // crisp parts have 1, a pool with a rim .72 to .95 when a drop falls into it
+constexpr size_t kParts = 12;              // in which chains are judged
+constexpr double kWalkInFaceSizes = 4;     // at least: roots of the area of the face beside the edge
 
 /// 1 - the cosine that the normals of an edge's triangles turn by; 0 off inner edges.
 Buffer<double> turns_at(const MeshEdges& edges, View<const WorldPoint> normals) {
@@ -98,17 +102,33 @@ struct Judged {
   /// edge at most; before one has looked, as much as the edge.
   double beside = 1;
   double unseen = 0;  ///< the same of sides that are a single small triangle, as if that turned like the edge
+  bool is_long = false, is_sharp = false;
   bool is_bad() const { return beside >= kMostBeside; }
   /// A triangle between creases says nothing of a surface.
   bool is_surely_good() const { return beside + unseen < kMostBeside; }
+  bool is_strong() const { return is_long && is_sharp && beside + unseen < kMostBesideStrong; }
 };
 
 /// Of the chains of a component. Those that are neither good nor bad say nothing, if they are not the most.
 struct Lengths {
-  double all = 0, good = 0, bad = 0;
-  bool are_of_creases() const { return good >= kLeastGoodShare * (good + bad) && 2 * good >= all; }
+  double all = 0, good = 0, bad = 0, strong = 0;
+  double may_be_strong = 0;  ///< of long ones that one has not looked at yet
+  void add(const Judged& chain) {
+    all += chain.length_world;
+    may_be_strong += chain.is_long ? chain.length_world : 0;
+  }
+  void add_judged(const Judged& chain, bool is_bad) {
+    may_be_strong -= chain.is_long ? chain.length_world : 0;
+    strong += chain.is_strong() ? chain.length_world : 0;
+    good += chain.is_surely_good() ? chain.length_world : 0;
+    bad += is_bad ? chain.length_world : 0;
+  }
+  bool are_nearly_all_good() const { return good >= kLeastGoodShare * (good + bad) && 2 * good >= all; }
+  bool are_of_creases() const { return are_nearly_all_good() || strong >= kLeastStrongShare * all; }
   /// Whatever the chains are that one has not looked at yet, and however sums are rounded.
-  bool are_surely_of_a_scan() const { return bad > 1.001 * (1 - kLeastGoodShare) * all; }
+  bool are_surely_of_a_scan() const {
+    return bad > 1.001 * (1 - kLeastGoodShare) * all && 1.001 * (strong + may_be_strong) < kLeastStrongShare * all;
+  }
 };
 
 /// All chains, and the sums of each component that has creases.
@@ -117,7 +137,9 @@ struct JudgedChains {
   std::map<uint32_t, Lengths> of_component;
 
   bool is_crease(size_t c) const {
-    return chain[c].beside < kMostBesideInPart && of_component.at(chain[c].component).are_of_creases();
+    const Lengths& lengths = of_component.at(chain[c].component);
+    return chain[c].beside < kMostBesideInPart && lengths.are_of_creases() &&
+           (lengths.are_nearly_all_good() || chain[c].is_long || chain[c].is_surely_good());
   }
   /// Whether nearly all that looks like a crease is one, over all components.
   bool are_nearly_all_creases() const {
@@ -155,7 +177,9 @@ class Judge {
     for (size_t c = 0; c < chains_.size(); ++c) {
       if (chains_[c].kind != CurveKind::crease) continue;
       judged[c] = {before ? 0 : component_[edges_.edges[chains_[c].edge[0]].face[0]], length_of(mesh_, chains_[c])};
-      of_component[judged[c].component].all += judged[c].length_world;
+      judged[c].is_long = !before && judged[c].length_world >= kLong * reach_world_ &&
+                          double(chains_[c].edge.size()) >= kLong;  // of frames of a liquid nearly all are to be good
+      of_component[judged[c].component].add(judged[c]);
     }
     for (size_t first = 0; first < kParts; ++first) {
       for_each_index(size_t(0), (chains_.size() + kParts - 1 - first) / kParts, [&](size_t i) {
@@ -165,12 +189,10 @@ class Judge {
           look_beside_chain(ground, chains_[c], judged[c]);
       });
       for (size_t c = first; c < chains_.size(); c += kParts)
-        if (chains_[c].kind == CurveKind::crease && (before ? !judged[c].is_surely_good() : judged[c].is_bad()))
-          of_component[judged[c].component].bad += judged[c].length_world;
+        if (chains_[c].kind == CurveKind::crease)
+          of_component[judged[c].component].add_judged(judged[c],
+                                                       before ? !judged[c].is_surely_good() : judged[c].is_bad());
     }
-    for (size_t c = 0; c < chains_.size(); ++c)
-      if (chains_[c].kind == CurveKind::crease && judged[c].is_surely_good())
-        of_component[judged[c].component].good += judged[c].length_world;
     return all;
   }
 
@@ -181,6 +203,7 @@ class Judge {
       return length(mesh_.vertices[chain.vertex[i + 1]] - mesh_.vertices[chain.vertex[i]]);
     };
     for (size_t i = 0; i < chain.edge.size(); ++i) at += size(i) * std::sqrt(turns_[chain.edge[i]]);
+    judged.is_sharp = at >= judged.length_world * std::sqrt(turn_of_degrees(kStrongDegrees));
     // Sums only grow: what is found to be no crease on the way needs no more walks.
     for (size_t i = 0; i < chain.edge.size() && beside / at < kMostBesideInPart; ++i) {
       const uint32_t e = chain.edge[i];
