@@ -1,4 +1,5 @@
 // The search for creases beside a device's work, and the mesh of a lattice that it looks at.
+#include "core/copy_product.h"
 #include "features/mesh/weld_for_features.h"
 #include "geometry/world_vector.h"
 #include "isoshell/distance.h"
@@ -57,6 +58,31 @@ TEST_CASE("creases: a lattice is welded as its soup is", "[curves][unit]") {
       CHECK((mesh.vertices.size() < size_t(surface.points.size())) == (far > 0));
       check_same(mesh, weld_for_features(soup_of(surface)));
     }
+}
+
+TEST_CASE("creases: a fin that rounding has flattened is left out, a wall without thickness stays as one",
+          "[curves][unit]") {
+  TestContext context;
+  const LatticeSurface surface =
+      snap_surface(shapes::box({0, 0, 0}, {1, 1, 1}), frame_of(crossing_boxes(), 200), context);
+  const size_t faces = weld_for_features(surface).triangles.size();
+  for (const int32_t height : {4, 64}) {
+    LatticeSurface with_fin = host_copy(surface);
+    with_fin.points = Buffer<PointQ8>(surface.points.size() + 1);
+    std::copy(surface.points.begin(), surface.points.end(), with_fin.points.begin());
+    const auto [a, b, c] = surface.triangles[0];
+    with_fin.points[surface.points.size()] = surface.points[a];
+    with_fin.points[surface.points.size()].x -= height;
+    const auto top = uint32_t(surface.points.size());
+    with_fin.triangles = Buffer<TriangleIndices>(surface.triangles.size() + 2);
+    std::copy(surface.triangles.begin(), surface.triangles.end(), with_fin.triangles.begin());
+    with_fin.triangles[surface.triangles.size()] = {a, b, top};
+    with_fin.triangles[surface.triangles.size() + 1] = {b, a, top};
+    const FeatureMesh welded = weld_for_features(with_fin);
+    const size_t more = height < 8 ? 0 : 1;
+    CHECK(welded.triangles.size() == faces + more);
+    CHECK(welded.vertices.size() == 8 + more);
+  }
 }
 
 TEST_CASE("creases: points of a lattice that no triangle uses are passed over", "[curves][unit]") {

@@ -32,11 +32,6 @@ constexpr size_t kTrianglesBetweenLooks = 4096;  // whether the run goes on
 constexpr size_t kMostChanges = 64;  // a thin triangle, far more than it takes; rounding may not make it endless
 constexpr double kMostCells = 8;     // that a triangle's box meets, in the mean
 
-double height_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
-  const double longest = std::sqrt(std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)}));
-  return longest > 0 ? length(doubled_area(a, b, c)) / longest : 0;
-}
-
 bool is_long(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c, double high) {
   const double longest_sq = std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)});
   return longest_sq > kStripIsLonger * kStripIsLonger * high * high;
@@ -171,7 +166,7 @@ class Slivers : private EditableMesh {
   WorldPoint area_of(uint32_t t) const { return normal(triangles()[t]); }
   double height(uint32_t t) const {
     const auto& [a, b, c] = triangles()[t].corner;
-    return height_of(at(a), at(b), at(c));
+    return triangle_height(at(a), at(b), at(c));
   }
   bool is_thin(uint32_t t) const { return !triangles()[t].is_gone() && (height(t) < least_ || is_of_strip(t)); }
   bool is_of_strip(uint32_t t) const {
@@ -259,7 +254,7 @@ class Slivers : private EditableMesh {
   /// afterwards.
   bool is_cap(const Flap& f) const {
     const WorldPoint &a = at(f.a), &b = at(f.b), &c = at(f.c), &d = at(f.d);
-    return !is_thin(f.other) && std::min(height_of(a, d, c), height_of(b, c, d)) > height(f.triangle);
+    return !is_thin(f.other) && std::min(triangle_height(a, d, c), triangle_height(b, c, d)) > height(f.triangle);
   }
 
   static bool are_opposite(const WorldPoint& m, const WorldPoint& n) {
@@ -339,7 +334,7 @@ std::vector<uint32_t> narrow_triangles(const FeatureMesh& mesh, const Heights& h
   for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
     const WorldPoint &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-    const double high = height_of(p, q, r);
+    const double high = triangle_height(p, q, r);
     is_narrow[t] = high < heights.least || (high < heights.strip && is_long(p, q, r, high));
   });
   std::vector<uint32_t> found;
@@ -354,7 +349,7 @@ bool is_sliver(const FeatureMesh& mesh, const MeshTwins& twins, uint32_t t, doub
     return std::array<WorldPoint, 3>{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
   };
   const std::array<WorldPoint, 3> c = corners(t);
-  return height_of(c[0], c[1], c[2]) < least_height_world || turns_at_longest(c, [&](size_t edge) {
+  return triangle_height(c[0], c[1], c[2]) < least_height_world || turns_at_longest(c, [&](size_t edge) {
            const uint32_t twin = twins.of[3 * t + edge];
            if (twin == kNone) return WorldPoint{0, 0, 0};
            const std::array<WorldPoint, 3> beside = corners(twin / 3);

@@ -16,6 +16,8 @@
 namespace isoshell {
 namespace {
 
+constexpr double kThinSteps = 8;  ///< of the lattice: what rounding may have flattened
+
 WorldPoint without_negative_zero(const WorldPoint& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
 
 /// A point of a lattice, as a number to sort by.
@@ -89,24 +91,48 @@ WeldedTriangles by_smallest_corner(View<const Triangle> triangles, const WeldedV
   });
 }
 
-/// Calls visit(triangle) for the first one of the same corners, of those whose smallest corner a vertex is.
+/// Calls visit(triangle) for the first one of the same corners, of those whose smallest corner a vertex is; for none
+/// where as many face one way as the other, and they are less high: what was between them has no inside any more.
 template <class Visit>
-void for_each_first(const WeldedTriangles& all, int64_t vertex, Visit visit) {
+void for_each_first(const WeldedTriangles& all, int64_t vertex, const WeldedVertices& welded, double least_height_world,
+                    Visit visit) {
   const View<const WeldedTriangle> in = all.in(vertex);
-  for (int64_t i = 0; i < in.size; ++i)
-    if (i == 0 || in[i].others != in[i - 1].others) visit(in[i]);
+  for (int64_t first = 0, end = 0; first < in.size; first = end) {
+    int64_t turned = 0;
+    for (end = first; end < in.size && in[end].others == in[first].others; ++end) turned += in[end].is_turned ? 1 : -1;
+    const auto at = [&](uint32_t v) { return welded.position[v]; };
+    const auto [a, b] = in[first].others;
+    if (turned != 0 || triangle_height(at(uint32_t(vertex)), at(a), at(b)) >= least_height_world) visit(in[first]);
+  }
+}
+
+void drop_unused_vertices(FeatureMesh& mesh) {
+  std::vector<uint8_t> is_used(mesh.vertices.size(), 0);
+  for_each_index(size_t(0), mesh.triangles.size(), [&](size_t t) {
+    for (const uint32_t v : mesh.triangles[t]) __atomic_store_n(&is_used[v], uint8_t(1), __ATOMIC_RELAXED);
+  });
+  if (std::find(is_used.begin(), is_used.end(), 0) == is_used.end()) return;
+  std::vector<uint32_t> number(mesh.vertices.size());
+  uint32_t count = 0;
+  for (size_t v = 0; v < number.size(); ++v) {
+    number[v] = count;
+    if (is_used[v]) mesh.vertices[count++] = mesh.vertices[v];
+  }
+  mesh.vertices.resize(count);
+  for (auto& t : mesh.triangles)
+    for (uint32_t& v : t) v = number[v];
 }
 
 template <class Triangle>
-FeatureMesh weld_triangles(View<const Triangle> triangles, WeldedVertices welded) {
+FeatureMesh weld_triangles(View<const Triangle> triangles, const WeldedVertices& welded, double least_height_world) {
   const WeldedTriangles all = by_smallest_corner(triangles, welded);
   FeatureMesh mesh;
-  mesh.vertices = std::move(welded.position);
+  mesh.vertices = welded.position;
   Buffer<int64_t> first(all.first.size());
   first[all.count()] = 0;
   for_each_index(int64_t(0), all.count(), [&](int64_t v) {
     int64_t count = 0;
-    for_each_first(all, v, [&](const WeldedTriangle&) { ++count; });
+    for_each_first(all, v, welded, least_height_world, [&](const WeldedTriangle&) { ++count; });
     first[v] = count;
   });
   offsets_from_counts(first.view());
@@ -114,11 +140,12 @@ FeatureMesh weld_triangles(View<const Triangle> triangles, WeldedVertices welded
   mesh.source_face.resize(mesh.triangles.size());
   for_each_index(int64_t(0), all.count(), [&](int64_t v) {
     auto at = size_t(first[v]);
-    for_each_first(all, v, [&](const WeldedTriangle& t) {
+    for_each_first(all, v, welded, least_height_world, [&](const WeldedTriangle& t) {
       mesh.triangles[at] = t.corners(uint32_t(v));
       mesh.source_face[at++] = t.source_face;
     });
   });
+  drop_unused_vertices(mesh);
   return mesh;
 }
 
@@ -128,12 +155,12 @@ FeatureMesh weld_for_features(const TriangleSoup& soup) {
   const View<const std::array<uint32_t, 3>> triangles{soup.triangles.data(), int64_t(soup.triangles.size())};
   WeldedVertices vertices = weld_vertices(soup.vertices, soup.triangles);
   for (WorldPoint& p : vertices.position) p = without_negative_zero(p);
-  return weld_triangles(triangles, std::move(vertices));
+  return weld_triangles(triangles, vertices, 0);
 }
 
 FeatureMesh weld_for_features(const LatticeSurface& surface) {
   if (std::optional<WeldedVertices> vertices = vertices_of(surface))
-    return weld_triangles(surface.triangles.view(), std::move(*vertices));
+    return weld_triangles(surface.triangles.view(), *vertices, kThinSteps * surface.frame.voxel_size / kOneVoxelQ8);
   TriangleMesh mesh = to_world(surface);
   TriangleSoup soup;
   soup.vertices = std::move(mesh.vertices);

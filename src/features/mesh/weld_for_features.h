@@ -12,7 +12,9 @@ namespace isoshell {
 /// face each other have the same corners. Cost: a sort of the vertices, and sorts of the triangles of each.
 FeatureMesh weld_for_features(const TriangleSoup& soup);
 
-/// The same of to_world(surface), which is in host memory. Cost: less, as its points are distinct whole numbers.
+/// The same of to_world(surface), which is in host memory; but of triangles of the same corners that are less than 8
+/// steps of the lattice high and half of which face the other way none stays: what they enclosed has been rounded away.
+/// Cost: less, as its points are distinct whole numbers.
 FeatureMesh weld_for_features(const LatticeSurface& surface);
 
 }  // namespace isoshell

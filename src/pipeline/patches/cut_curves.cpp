@@ -20,6 +20,8 @@ namespace isoshell {
 namespace {
 
 constexpr double kMostOnCurves = 0.5;  ///< of the vertices, where creases are left out
+constexpr double kNearMost = 1.1;      ///< times as many are no reason to look again
+constexpr int kMostLooks = 3;          ///< edges are shorter where curves face others, which shows when they are cut
 
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
 double six_volumes(const FeatureMesh& mesh) {
@@ -48,6 +50,7 @@ std::string obstacle(const PreparedSurface& p, const FeatureMesh& mesh, const Cu
   if (six_volumes(mesh) < 0) return "the faces look inwards";
   if (p.grown) return "walls without thickness had to be grown";
   if (p.closing_vox > 0) return "gaps were closed";
+  if (p.own_faces_meet) return "faces are so narrow that they meet once they are rounded";
   return "";
 }
 
@@ -135,20 +138,27 @@ SharedCut make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource s
 }
 
 /// The same along as many creases as half of the vertices can hold. Throws: as cut_surface.
-SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, CutSource source, RemeshReport& report,
+SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const CutSource& source, RemeshReport& report,
                           Context& context) {
   const FeatureMesh& mesh = plan.mesh;
+  const double most = std::max(1., kMostOnCurves * double(plan.seeds));
   CurveOptions within_budget = plan.curves;
   within_budget.edge_length_world = plan.how.edge_length_world;
-  within_budget.most_vertices = std::max(1., kMostOnCurves * double(plan.seeds));
-  const CurveNetwork network = find_curves(mesh, within_budget, plan.creases);
-  source.found = describe(mesh, network);
-  for (LostCurve& curve : left_out_of(mesh, all, edges_of(network))) source.left_out.push_back(std::move(curve));
+  within_budget.most_vertices = most;
   const FeatureReport all_found = report.features;
-  report_found(mesh, network, all_found.border_loops > 0, report.features);
-  report.features.border_loops = all_found.border_loops;
-  report.features.length_world = all_found.length_world;
-  return make_cut(plan, network, std::move(source), report.features, context);
+  for (int look = 1;; ++look) {
+    const CurveNetwork network = find_curves(mesh, within_budget, plan.creases);
+    CutSource fewer = source;
+    fewer.found = describe(mesh, network);
+    for (LostCurve& curve : left_out_of(mesh, all, edges_of(network))) fewer.left_out.push_back(std::move(curve));
+    report_found(mesh, network, all_found.border_loops > 0, report.features);
+    report.features.border_loops = all_found.border_loops;
+    report.features.length_world = all_found.length_world;
+    SharedCut cut = make_cut(plan, network, std::move(fewer), report.features, context);
+    const double on_curves = double(report.features.vertices);
+    if (on_curves <= kNearMost * most || look == kMostLooks) return cut;
+    within_budget.most_vertices *= most / on_curves;
+  }
 }
 
 /// How many vertices curves take at least at edges of that length: they are shorter where curves bend, or face others.
@@ -186,7 +196,7 @@ SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, cons
     if (may_fit) cut_along_all();
   }
   if (cut) return cut;
-  return cut_along_fewer(plan, network, std::move(source), report, context);
+  return cut_along_fewer(plan, network, source, report, context);
 }
 
 /// Those of which less than half was laid onto the sheet.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the made surfaces that kept borders are measured on.
 
-    bench/open_surfaces.py FOLDER
+    bench/shapes/open_surfaces.py FOLDER
 
 half_sphere.off: the upper half of a sphere of radius 1, 128 rings of 512. wavy_sheet.off: 300 x 300 squares over
 [-1, 1]^2, .15 sin 5x cos 4y high. Needs numpy.
