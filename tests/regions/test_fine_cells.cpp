@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "core/copy_product.h"
 #include "features/walls/fine_cells.h"
 #include "features/walls/mesh_faults.h"
 #include "isoshell/io/memory_input.h"
@@ -26,7 +27,9 @@ struct RelaxedWalls {
     p = prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
     in_patches.seeds.count = p.cut->seeds;
     seeds = relax_in_patches(*p.cut, in_patches, context).seeds;
-    with_cells = mesh_with_cells(p, *p.cut, seeds, in_patches, report, optimized, context);
+    SeededMesh first{{}, host_copy(seeds)};
+    faults = mesh_patches(p, *p.cut, first, in_patches, report, context);
+    with_cells = mesh_with_cells(p, *p.cut, seeds, faults.optimized, in_patches, report, optimized, context);
     mesh.emplace(*p.cut, with_cells.made, JoinOptions{p.cut->seeds});
   }
   FineCells cells() const {
@@ -38,6 +41,7 @@ struct RelaxedWalls {
   PreparedSurface p;
   PatchOptions in_patches;
   SeedSet seeds;
+  PatchFaults faults;
   MeshWithCells with_cells;
   std::optional<PatchMesh> mesh;
 };
@@ -112,8 +116,8 @@ TEST_CASE("ugly labels whose cells fail have regions that are closed and do not 
     if (pairs_of(volume).empty()) continue;
     INFO("random volume " << number);
     RelaxedWalls relaxed(volume, 300, context);
-    const auto made =
-        mend_patches(relaxed.p, *relaxed.p.cut, relaxed.seeds, relaxed.in_patches, relaxed.report, context);
+    const auto made = mend_patches(relaxed.p, *relaxed.p.cut, relaxed.seeds, relaxed.faults, relaxed.in_patches,
+                                   relaxed.report, context);
     if (!made || made->warning.empty()) continue;  // no cell had faults
     ++mended;
     const JoinedPatches& joined = made->joined;
@@ -130,6 +134,25 @@ TEST_CASE("ugly labels whose cells fail have regions that are closed and do not 
   CHECK(mended > 20);
 }
 
+TEST_CASE("patches of the same cells are taken as they were optimised, most of them to where they would come again") {
+  TestContext context;
+  const RelaxedWalls relaxed(random_labels(38), 500, context);
+  REQUIRE(!relaxed.faults.what.empty());
+  RemeshReport report;
+  OptimizeReport sum;
+  const MeshWithCells again =
+      mesh_with_cells(relaxed.p, *relaxed.p.cut, relaxed.seeds, {}, relaxed.in_patches, report, sum, context);
+  const MeshWithCells& made = relaxed.with_cells;
+  CHECK(made.is_optimized == again.is_optimized);
+  CHECK(made.cell == again.cell);
+  REQUIRE(made.made.mesh.position.size() == again.made.mesh.position.size());
+  int64_t same = 0;
+  for (int64_t v = 0; v < made.made.mesh.position.size(); ++v)
+    same += made.made.mesh.position[v] == again.made.mesh.position[v];
+  CHECK(4 * same > 3 * made.made.mesh.position.size());  // others are optimised a round more, or less
+  CHECK(made.made.mesh.triangles.size() == again.made.mesh.triangles.size());
+}
+
 TEST_CASE("mended patches are the same with any number of threads") {
   CpuContext one, four;
   one.threads = 1;
@@ -139,8 +162,8 @@ TEST_CASE("mended patches are the same with any number of threads") {
   for (CpuContext* context : {&one, &four}) {
     RelaxedWalls relaxed(random_labels(38), 500, *context);
     REQUIRE(!relaxed.with_cells.faults.what.empty());
-    const auto mended =
-        mend_patches(relaxed.p, *relaxed.p.cut, relaxed.seeds, relaxed.in_patches, relaxed.report, *context);
+    const auto mended = mend_patches(relaxed.p, *relaxed.p.cut, relaxed.seeds, relaxed.faults, relaxed.in_patches,
+                                     relaxed.report, *context);
     REQUIRE(mended);
     made.emplace_back();
     positions.emplace_back();

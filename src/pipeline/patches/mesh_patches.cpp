@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/buckets.h"
 #include "core/copy_product.h"
 #include "features/cutting/cut_piece.h"
 #include "pipeline/defects/flat_patches.h"
@@ -82,6 +83,45 @@ void add_corners(const DualMesh& mesh, const TrianglePairs& pairs, std::vector<u
       const TriangleIndices& i = mesh.triangles[t];
       vertices.insert(vertices.end(), {i.a, i.b, i.c});
     }
+}
+
+Buckets<uint32_t> vertices_by_patch(const CutSurface& cut, View<const uint32_t> home) {
+  return sort_into_buckets<uint32_t>(int64_t(patch_count(cut)), home.size,
+                                     [&](int64_t v, auto put) { put(cut.surface.patch[home[v]], uint32_t(v)); });
+}
+
+/// Takes patches of the same vertices as they were optimised. Result: which these are.
+PerPatch take_optimized(const CutSurface& cut, const OptimizedPatches& from, SeededMesh& made) {
+  PerPatch is_taken(patch_count(cut), 0);
+  if (from.is_optimized.empty()) return is_taken;
+  const View<const uint32_t> home{from.home.data(), int64_t(from.home.size())};
+  const Buckets<uint32_t> here = vertices_by_patch(cut, made.seeds.home.view()),
+                          there = vertices_by_patch(cut, from.made.seeds.home.view()),
+                          before = vertices_by_patch(cut, home);
+  std::vector<uint32_t> number(size_t(from.made.seeds.size()), kNone);
+  for (int64_t patch = 0; patch < here.count(); ++patch) {
+    const View<const uint32_t> to = here.in(patch), was = before.in(patch), is = there.in(patch);
+    is_taken[size_t(patch)] = from.is_optimized[size_t(patch)] && is.size == to.size &&
+                              std::equal(to.begin(), to.end(), was.begin(), was.end(),
+                                         [&](uint32_t u, uint32_t v) { return made.seeds.home[u] == home[v]; });
+    if (is_taken[size_t(patch)])
+      for (int64_t i = 0; i < to.size; ++i) number[is[i]] = to[i];
+  }
+  for (uint32_t v = 0; v < number.size(); ++v) {
+    if (number[v] == kNone) continue;
+    made.mesh.position[number[v]] = from.made.mesh.position[v];
+    made.seeds.position[number[v]] = from.made.seeds.position[v];
+    made.seeds.normal[number[v]] = from.made.seeds.normal[v];
+    made.seeds.home[number[v]] = from.made.seeds.home[v];
+  }
+  std::vector<TriangleIndices> triangles;
+  for (const TriangleIndices& t : made.mesh.triangles)
+    if (!is_taken[patch_of(cut, made, t.a)]) triangles.push_back(t);
+  for (const TriangleIndices& t : from.made.mesh.triangles)
+    if (number[t.a] != kNone) triangles.push_back({number[t.a], number[t.b], number[t.c]});
+  made.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
+  std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
+  return is_taken;
 }
 
 PatchFaults find_faults(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made, OptimizeReport& report,
@@ -163,21 +203,26 @@ PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, Seeded
   report.dual = {};
   report.optimize = {};
   const bool are_disks = make_dual(cut, made, report, context);
-  on_patches(cut, patches_to_optimize(cut, made, are_disks), made, context,
-             [&](const CutSurface& part, SeededMesh& mesh) {
-               optimize(part, mesh, options, report, report.optimize, context);
-             });
+  const Buffer<uint32_t> home = made.seeds.home.to_host();
+  PerPatch chosen = patches_to_optimize(cut, made, are_disks);
+  on_patches(cut, chosen, made, context, [&](const CutSurface& part, SeededMesh& mesh) {
+    optimize(part, mesh, options, report, report.optimize, context);
+  });
   bring_to_host(made);
-  const PatchFaults faults = find_faults(p, cut, made, report.optimize, context);
+  PatchFaults faults = find_faults(p, cut, made, report.optimize, context);
   if (faults.what.empty()) return faults;
+  OptimizedPatches optimized{
+      {host_copy(made.mesh), host_copy(made.seeds)}, {home.begin(), home.end()}, std::move(chosen)};
   triangulate_flat_patches(cut, faults, made);
   made = gather_patches(cut, {{made, vertices_in(cut, PerPatch(patch_count(cut), 1))}});
-  return find_faults(p, cut, made, report.optimize, context);
+  faults = find_faults(p, cut, made, report.optimize, context);
+  faults.optimized = std::move(optimized);
+  return faults;
 }
 
 MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed,
-                              const PatchOptions& options, RemeshReport& report, OptimizeReport& optimized,
-                              Context& context) {
+                              const OptimizedPatches& optimized, const PatchOptions& options, RemeshReport& report,
+                              OptimizeReport& sum, Context& context) {
   DualOptions keep_cells;
   keep_cells.keep_cells = true;
   Triangulation dual = timed(report, "dual", context,
@@ -190,12 +235,16 @@ MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, c
   const bool are_disks = dual.report.failed_cells == 0;
   out.made = std::move(dual);
   out.is_optimized = patches_to_optimize(cut, out.made, are_disks);
-  optimize_in_place(cut, out.is_optimized, out.made, options, report, optimized, context);
   bring_to_host(out.made);
-  out.faults = find_faults(p, cut, out.made, optimized, context);
+  const PerPatch is_taken = take_optimized(cut, optimized, out.made);
+  PerPatch others = out.is_optimized;
+  for (size_t patch = 0; patch < others.size(); ++patch) others[patch] = others[patch] && !is_taken[patch];
+  optimize_in_place(cut, others, out.made, options, report, sum, context);
+  bring_to_host(out.made);
+  out.faults = find_faults(p, cut, out.made, sum, context);
   const PerPatch is_flat = triangulate_flat_patches(cut, out.faults, out.made);
   if (!any(is_flat)) return out;
-  out.faults = find_faults(p, cut, out.made, optimized, context);
+  out.faults = find_faults(p, cut, out.made, sum, context);
   forget_unused(cut, out.made, is_flat, out.faults);
   return out;
 }

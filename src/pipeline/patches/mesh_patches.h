@@ -8,10 +8,18 @@
 
 namespace isoshell {
 
+/// Patches as they were optimised, in host memory.
+struct OptimizedPatches {
+  SeededMesh made;
+  std::vector<uint32_t> home;      ///< per vertex that was optimised where it was before: with all others of its patch
+  std::vector<char> is_optimized;  ///< per patch
+};
+
 /// Where a mesh of relaxed seeds cannot be the run's.
 struct PatchFaults {
-  std::vector<uint32_t> vertices;  ///< of the mesh; ascending
-  std::string what;                ///< empty: there are none
+  std::vector<uint32_t> vertices;   ///< of the mesh; ascending
+  std::string what;                 ///< empty: there are none
+  OptimizedPatches optimized = {};  ///< where there are some
 };
 
 /// The mesh of relaxed seeds with the cells that its vertices are from.
@@ -29,9 +37,10 @@ struct MeshWithCells {
 PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made, const PatchOptions& options,
                          RemeshReport& report, Context& context);
 
-/// The same with cells, and with all vertices that the dual's repair put in. `report`: of times alone. In host memory.
+/// The same with cells, and with all vertices that the dual's repair put in. Patches that have the same vertices
+/// without them are taken from `optimized`. `report`: of times alone. In host memory.
 MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed,
-                              const PatchOptions& options, RemeshReport& report, OptimizeReport& optimize,
-                              Context& context);
+                              const OptimizedPatches& optimized, const PatchOptions& options, RemeshReport& report,
+                              OptimizeReport& optimize, Context& context);
 
 }  // namespace isoshell

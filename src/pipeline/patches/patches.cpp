@@ -169,7 +169,7 @@ MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const Cu
     if (faults.what.empty()) {
       out.joined = timed(report, "angles", context,
                          [&] { return widened_to_count(*cut, made, join_options(options), context); });
-    } else if (auto mended = mend_patches(p, *cut, relaxed, options, report, context)) {
+    } else if (auto mended = mend_patches(p, *cut, relaxed, faults, options, report, context)) {
       out.joined = accepted(std::move(*mended), report);
     } else {
       return faults.what;

@@ -112,7 +112,7 @@ std::string join_relaxed(const PreparedSurface& p, SeededMesh& made, const Patch
     joined = timed(report, "angles", context, [&] { return widened_to_count(cut, made, options, context); });
     return has_inverted(cut, joined) ? "a region would be inside out" : "";
   }
-  std::optional<MendedPatches> mended = mend_patches(p, cut, relaxed, in_patches, report, context);
+  std::optional<MendedPatches> mended = mend_patches(p, cut, relaxed, faults, in_patches, report, context);
   if (!mended) return faults.what;
   joined = accepted(std::move(*mended), report);
   return "";
