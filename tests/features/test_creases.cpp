@@ -87,25 +87,21 @@ TEST_CASE("curves: an edge between a flat side and a round one is a crease, howe
 
 TEST_CASE("curves: a part with a rough place keeps its long sharp creases, one that is rough all over has none",
           "[curves][unit]") {
-  const TriangleSoup part = cylinder(64, 16, 2);
-  const auto rough_until = [&](double angle) {
-    int number = 0;
-    return moved(part, [&](const WorldPoint& p) {
-      const bool is_inside = p.z > .3 && p.z < 1.7 && std::abs(std::atan2(p.y, p.x)) < angle;
-      const double r = is_inside ? 1 + .08 * (number++ % 3 - 1) : 1;
-      return WorldPoint{r * p.x, r * p.y, p.z};
-    });
-  };
-  const auto rims = [](const TriangleSoup& soup) {
-    double sum = 0;
-    const FeatureMesh mesh = weld_for_features(soup);
-    for (const FeatureCurve& curve : find_curves(mesh, {CreaseMode::automatic, 0, .1}).curves)
-      for (size_t i = 0; curve.is_loop && i < curve.vertex.size(); ++i)
-        sum += length(mesh.vertices[curve.vertex[(i + 1) % curve.vertex.size()]] - mesh.vertices[curve.vertex[i]]);
-    return sum;
-  };
-  CHECK(rims(rough_until(.6)) == Approx(2 * kTau).epsilon(.01));
-  CHECK(curves_of(shaken(part, .08), .1).curves.empty());
+  constexpr double length = .15;
+  const TriangleSoup part = cylinder(128, 42, 2), rough = shaken(part, .02);
+  TriangleSoup in_part = part;  // on a third of its round side
+  for (size_t v = 0; v < part.vertices.size(); ++v) {
+    const WorldPoint& p = part.vertices[v];
+    if (p.z > .3 && p.z < 1.7 && std::abs(std::atan2(p.y, p.x)) < 1) in_part.vertices[v] = rough.vertices[v];
+  }
+  const FeatureMesh mesh = weld_for_features(in_part);
+  double loops_world = 0;
+  for (const FeatureCurve& curve : find_curves(mesh, {CreaseMode::automatic, 0, length}).curves)
+    for (size_t i = 0; curve.is_loop && i < curve.vertex.size(); ++i)
+      loops_world +=
+          isoshell::length(mesh.vertices[curve.vertex[(i + 1) % curve.vertex.size()]] - mesh.vertices[curve.vertex[i]]);
+  CHECK(loops_world == Approx(2 * kTau).epsilon(.01));
+  CHECK(curves_of(rough, length).curves.empty());
 }
 
 TEST_CASE("curves: creases between single small triangles say nothing of the surface, and are kept with the others",

@@ -109,7 +109,8 @@ struct Judged {
   bool is_strong() const { return is_long && is_sharp && beside + unseen < kMostBesideStrong; }
 };
 
-/// Of the chains of a component. Those that are neither good nor bad say nothing, if they are not the most.
+/// Of the chains of a component. Those that are neither good nor bad say nothing, if they are not the most. A part with
+/// a rough or twisted place has some strong ones, a scan hardly any.
 struct Lengths {
   double all = 0, good = 0, bad = 0, strong = 0;
   double may_be_strong = 0;  ///< of long ones that one has not looked at yet
@@ -123,8 +124,8 @@ struct Lengths {
     good += chain.is_surely_good() ? chain.length_world : 0;
     bad += is_bad ? chain.length_world : 0;
   }
-  bool are_nearly_all_good() const { return good >= kLeastGoodShare * (good + bad) && 2 * good >= all; }
-  bool are_of_creases() const { return are_nearly_all_good() || strong >= kLeastStrongShare * all; }
+  bool are_mostly_good() const { return good >= kLeastGoodShare * (good + bad) && 2 * good >= all; }
+  bool are_of_creases() const { return are_mostly_good() || strong >= kLeastStrongShare * all; }
   /// Whatever the chains are that one has not looked at yet, and however sums are rounded.
   bool are_surely_of_a_scan() const {
     return bad > 1.001 * (1 - kLeastGoodShare) * all && 1.001 * (strong + may_be_strong) < kLeastStrongShare * all;
@@ -136,10 +137,11 @@ struct JudgedChains {
   std::vector<Judged> chain;
   std::map<uint32_t, Lengths> of_component;
 
+  /// Where strong chains alone tell that a component has creases, short ones with a round side may be of a rough place.
   bool is_crease(size_t c) const {
     const Lengths& lengths = of_component.at(chain[c].component);
     return chain[c].beside < kMostBesideInPart && lengths.are_of_creases() &&
-           (lengths.are_nearly_all_good() || chain[c].is_long || chain[c].is_surely_good());
+           (lengths.are_mostly_good() || chain[c].is_long || chain[c].is_surely_good());
   }
   /// Whether nearly all that looks like a crease is one, over all components.
   bool are_nearly_all_creases() const {
@@ -167,8 +169,8 @@ class Judge {
   }
 
   /// Looks at every twelfth chain, then at the next ones of components that may have creases: on a scan, it needs no
-  /// more than show that a quarter of their length is bad. Beside creases before all are bad that these do not hold, or
-  /// that say nothing, and the surface is one component.
+  /// more than show that a quarter of their length is bad, and that too few are long. Beside creases before all are bad
+  /// that these do not hold, or that say nothing, and the surface is one component.
   JudgedChains judge(const CreasesBefore* before) const {
     const WalkGround ground{mesh_, edges_, normals_, is_end_};
     JudgedChains all{std::vector<Judged>(chains_.size()), {}};
@@ -178,7 +180,7 @@ class Judge {
       if (chains_[c].kind != CurveKind::crease) continue;
       judged[c] = {before ? 0 : component_[edges_.edges[chains_[c].edge[0]].face[0]], length_of(mesh_, chains_[c])};
       judged[c].is_long = !before && judged[c].length_world >= kLong * reach_world_ &&
-                          double(chains_[c].edge.size()) >= kLong;  // of frames of a liquid nearly all are to be good
+                          double(chains_[c].edge.size()) >= kLong;  // a liquid with a rim is no part
       of_component[judged[c].component].add(judged[c]);
     }
     for (size_t first = 0; first < kParts; ++first) {

@@ -94,15 +94,15 @@ WeldedTriangles by_smallest_corner(View<const Triangle> triangles, const WeldedV
 /// Calls visit(triangle) for the first one of the same corners, of those whose smallest corner a vertex is; for none
 /// where as many face one way as the other, and they are less high: what was between them has no inside any more.
 template <class Visit>
-void for_each_first(const WeldedTriangles& all, int64_t vertex, const WeldedVertices& welded, double least_height_world,
-                    Visit visit) {
+void for_each_first(const WeldedTriangles& all, int64_t vertex, const std::vector<WorldPoint>& position,
+                    double least_height_world, Visit visit) {
   const View<const WeldedTriangle> in = all.in(vertex);
   for (int64_t first = 0, end = 0; first < in.size; first = end) {
     int64_t turned = 0;
     for (end = first; end < in.size && in[end].others == in[first].others; ++end) turned += in[end].is_turned ? 1 : -1;
-    const auto at = [&](uint32_t v) { return welded.position[v]; };
     const auto [a, b] = in[first].others;
-    if (turned != 0 || triangle_height(at(uint32_t(vertex)), at(a), at(b)) >= least_height_world) visit(in[first]);
+    if (turned != 0 || triangle_height(position[size_t(vertex)], position[a], position[b]) >= least_height_world)
+      visit(in[first]);
   }
 }
 
@@ -124,15 +124,15 @@ void drop_unused_vertices(FeatureMesh& mesh) {
 }
 
 template <class Triangle>
-FeatureMesh weld_triangles(View<const Triangle> triangles, const WeldedVertices& welded, double least_height_world) {
+FeatureMesh weld_triangles(View<const Triangle> triangles, WeldedVertices welded, double least_height_world) {
   const WeldedTriangles all = by_smallest_corner(triangles, welded);
   FeatureMesh mesh;
-  mesh.vertices = welded.position;
+  mesh.vertices = std::move(welded.position);
   Buffer<int64_t> first(all.first.size());
   first[all.count()] = 0;
   for_each_index(int64_t(0), all.count(), [&](int64_t v) {
     int64_t count = 0;
-    for_each_first(all, v, welded, least_height_world, [&](const WeldedTriangle&) { ++count; });
+    for_each_first(all, v, mesh.vertices, least_height_world, [&](const WeldedTriangle&) { ++count; });
     first[v] = count;
   });
   offsets_from_counts(first.view());
@@ -140,7 +140,7 @@ FeatureMesh weld_triangles(View<const Triangle> triangles, const WeldedVertices&
   mesh.source_face.resize(mesh.triangles.size());
   for_each_index(int64_t(0), all.count(), [&](int64_t v) {
     auto at = size_t(first[v]);
-    for_each_first(all, v, welded, least_height_world, [&](const WeldedTriangle& t) {
+    for_each_first(all, v, mesh.vertices, least_height_world, [&](const WeldedTriangle& t) {
       mesh.triangles[at] = t.corners(uint32_t(v));
       mesh.source_face[at++] = t.source_face;
     });
@@ -149,23 +149,26 @@ FeatureMesh weld_triangles(View<const Triangle> triangles, const WeldedVertices&
   return mesh;
 }
 
-}  // namespace
-
-FeatureMesh weld_for_features(const TriangleSoup& soup) {
+FeatureMesh weld_soup(const TriangleSoup& soup, double least_height_world) {
   const View<const std::array<uint32_t, 3>> triangles{soup.triangles.data(), int64_t(soup.triangles.size())};
   WeldedVertices vertices = weld_vertices(soup.vertices, soup.triangles);
   for (WorldPoint& p : vertices.position) p = without_negative_zero(p);
-  return weld_triangles(triangles, vertices, 0);
+  return weld_triangles(triangles, std::move(vertices), least_height_world);
 }
 
+}  // namespace
+
+FeatureMesh weld_for_features(const TriangleSoup& soup) { return weld_soup(soup, 0); }
+
 FeatureMesh weld_for_features(const LatticeSurface& surface) {
+  const double least_height_world = kThinSteps * surface.frame.voxel_size / kOneVoxelQ8;
   if (std::optional<WeldedVertices> vertices = vertices_of(surface))
-    return weld_triangles(surface.triangles.view(), *vertices, kThinSteps * surface.frame.voxel_size / kOneVoxelQ8);
+    return weld_triangles(surface.triangles.view(), std::move(*vertices), least_height_world);
   TriangleMesh mesh = to_world(surface);
   TriangleSoup soup;
   soup.vertices = std::move(mesh.vertices);
   soup.triangles = std::move(mesh.triangles);
-  return weld_for_features(soup);
+  return weld_soup(soup, least_height_world);
 }
 
 }  // namespace isoshell

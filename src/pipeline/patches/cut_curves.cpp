@@ -137,7 +137,8 @@ SharedCut make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource s
   return cut;
 }
 
-/// The same along as many creases as half of the vertices can hold. Throws: as cut_surface.
+/// The same along as many creases as half of the vertices can hold, to within a tenth or as near as some looks come.
+/// Throws: as cut_surface, where no look succeeds.
 SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const CutSource& source, RemeshReport& report,
                           Context& context) {
   const FeatureMesh& mesh = plan.mesh;
@@ -146,19 +147,26 @@ SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const Cu
   within_budget.edge_length_world = plan.how.edge_length_world;
   within_budget.most_vertices = most;
   const FeatureReport all_found = report.features;
-  for (int look = 1;; ++look) {
+  SharedCut cut;
+  std::vector<uint64_t> kept_before;
+  for (int look = 1; look <= kMostLooks; ++look) {
     const CurveNetwork network = find_curves(mesh, within_budget, plan.creases);
+    const std::vector<uint64_t> kept = edges_of(network);
+    if (cut && kept == kept_before) break;
+    kept_before = kept;
     CutSource fewer = source;
     fewer.found = describe(mesh, network);
-    for (LostCurve& curve : left_out_of(mesh, all, edges_of(network))) fewer.left_out.push_back(std::move(curve));
-    report_found(mesh, network, all_found.border_loops > 0, report.features);
-    report.features.border_loops = all_found.border_loops;
-    report.features.length_world = all_found.length_world;
-    SharedCut cut = make_cut(plan, network, std::move(fewer), report.features, context);
-    const double on_curves = double(report.features.vertices);
-    if (on_curves <= kNearMost * most || look == kMostLooks) return cut;
-    within_budget.most_vertices *= most / on_curves;
+    for (LostCurve& curve : left_out_of(mesh, all, kept)) fewer.left_out.push_back(std::move(curve));
+    FeatureReport found = all_found;
+    report_found(mesh, network, all_found.border_loops > 0, found);
+    found.border_loops = all_found.border_loops;
+    found.length_world = all_found.length_world;
+    cut = make_cut(plan, network, std::move(fewer), found, context);
+    report.features = found;
+    if (double(found.vertices) <= kNearMost * most) break;
+    within_budget.most_vertices *= most / double(found.vertices);
   }
+  return cut;
 }
 
 /// How many vertices curves take at least at edges of that length: they are shorter where curves bend, or face others.

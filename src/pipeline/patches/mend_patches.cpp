@@ -120,14 +120,12 @@ WallMesh with_fine_cells(FineCells& cells, FaultFinder& faults, Context& context
 
 }  // namespace
 
-std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed_seeds,
-                                          const PatchFaults& found, const PatchOptions& in_patches,
-                                          RemeshReport& report, Context& context) {
+std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSurface& cut, const PatchFaults& found,
+                                          const PatchOptions& in_patches, RemeshReport& report, Context& context) {
   if (!memory_allows(cut, context)) return {};
   MendedPatches out;
-  out.optimize = report.optimize;  // of the patches that stay as they are
-  const MeshWithCells with_cells =
-      mesh_with_cells(p, cut, relaxed_seeds, found.optimized, in_patches, report, out.optimize, context);
+  out.optimize = report.optimize;  // the first time; patches that are optimised again are added
+  const MeshWithCells with_cells = mesh_with_cells(p, cut, found.optimized, in_patches, report, out.optimize, context);
   return timed(report, "coarsen", context, [&]() -> std::optional<MendedPatches> {
     const JoinOptions options = join_options(in_patches);
     const SeededMesh& made = with_cells.made;

@@ -20,11 +20,10 @@ struct MendedPatches {
 /// are simplified from the fine triangles instead, and so are those that the fine ones come to meet: in the end
 /// triangles intersect where those of the input do, if anywhere. None where fine triangles intersect or a region is
 /// inside out, and where the memory limit does not allow it. `faults`: as mesh_patches found them. `report`: of times
-/// alone. Cost: the dual once more, optimisation of the patches that it repaired, that of coarsening the fine triangles
-/// of these cells, and for each time that there are more a pass over all fine triangles.
-std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed,
-                                          const PatchFaults& faults, const PatchOptions& options, RemeshReport& report,
-                                          Context& context);
+/// alone. Cost: the dual once more, optimisation of the patches in which it puts vertices, that of coarsening the fine
+/// triangles of these cells, and for each time that there are more a pass over all fine triangles.
+std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSurface& cut, const PatchFaults& faults,
+                                          const PatchOptions& options, RemeshReport& report, Context& context);
 
 /// What becomes of a run that takes them.
 JoinedPatches accepted(MendedPatches mended, RemeshReport& report);

@@ -90,22 +90,22 @@ Buckets<uint32_t> vertices_by_patch(const CutSurface& cut, View<const uint32_t> 
                                      [&](int64_t v, auto put) { put(cut.surface.patch[home[v]], uint32_t(v)); });
 }
 
-/// Takes patches of the same vertices as they were optimised. Result: which these are.
-PerPatch take_optimized(const CutSurface& cut, const OptimizedPatches& from, SeededMesh& made) {
-  PerPatch is_taken(patch_count(cut), 0);
-  if (from.is_optimized.empty()) return is_taken;
-  const View<const uint32_t> home{from.home.data(), int64_t(from.home.size())};
+/// Takes those of the chosen patches that have the same vertices as they were optimised. Result: the others of them.
+PerPatch take_optimized(const CutSurface& cut, const OptimizedPatches& from, const PerPatch& chosen, SeededMesh& made) {
   const Buckets<uint32_t> here = vertices_by_patch(cut, made.seeds.home.view()),
                           there = vertices_by_patch(cut, from.made.seeds.home.view()),
-                          before = vertices_by_patch(cut, home);
+                          before = vertices_by_patch(cut, from.seeds.home.view());
+  PerPatch is_taken(chosen.size(), 0), others = chosen;
   std::vector<uint32_t> number(size_t(from.made.seeds.size()), kNone);
-  for (int64_t patch = 0; patch < here.count(); ++patch) {
-    const View<const uint32_t> to = here.in(patch), was = before.in(patch), is = there.in(patch);
-    is_taken[size_t(patch)] = from.is_optimized[size_t(patch)] && is.size == to.size &&
-                              std::equal(to.begin(), to.end(), was.begin(), was.end(),
-                                         [&](uint32_t u, uint32_t v) { return made.seeds.home[u] == home[v]; });
-    if (is_taken[size_t(patch)])
-      for (int64_t i = 0; i < to.size; ++i) number[is[i]] = to[i];
+  for (size_t patch = 0; patch < chosen.size(); ++patch) {
+    const View<const uint32_t> to = here.in(int64_t(patch)), was = before.in(int64_t(patch)),
+                               is = there.in(int64_t(patch));
+    const auto is_same = [&](uint32_t u, uint32_t v) { return made.seeds.home[u] == from.seeds.home[v]; };
+    is_taken[patch] = chosen[patch] && from.is_optimized[patch] && is.size == to.size &&
+                      std::equal(to.begin(), to.end(), was.begin(), was.end(), is_same);
+    if (!is_taken[patch]) continue;
+    others[patch] = 0;
+    for (int64_t i = 0; i < to.size; ++i) number[is[i]] = to[i];
   }
   for (uint32_t v = 0; v < number.size(); ++v) {
     if (number[v] == kNone) continue;
@@ -121,7 +121,7 @@ PerPatch take_optimized(const CutSurface& cut, const OptimizedPatches& from, See
     if (number[t.a] != kNone) triangles.push_back({number[t.a], number[t.b], number[t.c]});
   made.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
   std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
-  return is_taken;
+  return others;
 }
 
 PatchFaults find_faults(const PreparedSurface& p, const CutSurface& cut, const SeededMesh& made, OptimizeReport& report,
@@ -203,7 +203,7 @@ PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, Seeded
   report.dual = {};
   report.optimize = {};
   const bool are_disks = make_dual(cut, made, report, context);
-  const Buffer<uint32_t> home = made.seeds.home.to_host();
+  SeedSet seeds = host_copy(made.seeds);
   PerPatch chosen = patches_to_optimize(cut, made, are_disks);
   on_patches(cut, chosen, made, context, [&](const CutSurface& part, SeededMesh& mesh) {
     optimize(part, mesh, options, report, report.optimize, context);
@@ -211,22 +211,22 @@ PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, Seeded
   bring_to_host(made);
   PatchFaults faults = find_faults(p, cut, made, report.optimize, context);
   if (faults.what.empty()) return faults;
-  OptimizedPatches optimized{
-      {host_copy(made.mesh), host_copy(made.seeds)}, {home.begin(), home.end()}, std::move(chosen)};
+  OptimizedPatches optimized{std::move(seeds), {host_copy(made.mesh), host_copy(made.seeds)}, std::move(chosen)};
   triangulate_flat_patches(cut, faults, made);
   made = gather_patches(cut, {{made, vertices_in(cut, PerPatch(patch_count(cut), 1))}});
   faults = find_faults(p, cut, made, report.optimize, context);
-  faults.optimized = std::move(optimized);
+  if (!faults.what.empty()) faults.optimized = std::move(optimized);
   return faults;
 }
 
-MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed,
-                              const OptimizedPatches& optimized, const PatchOptions& options, RemeshReport& report,
-                              OptimizeReport& sum, Context& context) {
+MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const OptimizedPatches& optimized,
+                              const PatchOptions& options, RemeshReport& report, OptimizeReport& sum,
+                              Context& context) {
   DualOptions keep_cells;
   keep_cells.keep_cells = true;
-  Triangulation dual = timed(report, "dual", context,
-                             [&] { return triangulate_dual(cut.surface, host_copy(relaxed), keep_cells, context); });
+  Triangulation dual = timed(report, "dual", context, [&] {
+    return triangulate_dual(cut.surface, host_copy(optimized.seeds), keep_cells, context);
+  });
   bring_to_host(dual);
   MeshWithCells out;
   out.dual.assign(dual.mesh.triangles.begin(), dual.mesh.triangles.end());
@@ -236,9 +236,7 @@ MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, c
   out.made = std::move(dual);
   out.is_optimized = patches_to_optimize(cut, out.made, are_disks);
   bring_to_host(out.made);
-  const PerPatch is_taken = take_optimized(cut, optimized, out.made);
-  PerPatch others = out.is_optimized;
-  for (size_t patch = 0; patch < others.size(); ++patch) others[patch] = others[patch] && !is_taken[patch];
+  const PerPatch others = take_optimized(cut, optimized, out.is_optimized, out.made);
   optimize_in_place(cut, others, out.made, options, report, sum, context);
   bring_to_host(out.made);
   out.faults = find_faults(p, cut, out.made, sum, context);

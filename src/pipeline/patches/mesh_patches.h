@@ -10,8 +10,8 @@ namespace isoshell {
 
 /// Patches as they were optimised, in host memory.
 struct OptimizedPatches {
+  SeedSet seeds;  ///< the vertices before that, as many as are asked for
   SeededMesh made;
-  std::vector<uint32_t> home;      ///< per vertex that was optimised where it was before: with all others of its patch
   std::vector<char> is_optimized;  ///< per patch
 };
 
@@ -19,7 +19,7 @@ struct OptimizedPatches {
 struct PatchFaults {
   std::vector<uint32_t> vertices;   ///< of the mesh; ascending
   std::string what;                 ///< empty: there are none
-  OptimizedPatches optimized = {};  ///< where there are some
+  OptimizedPatches optimized = {};  ///< where there are some faults
 };
 
 /// The mesh of relaxed seeds with the cells that its vertices are from.
@@ -37,10 +37,9 @@ struct MeshWithCells {
 PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made, const PatchOptions& options,
                          RemeshReport& report, Context& context);
 
-/// The same with cells, and with all vertices that the dual's repair put in. Patches that have the same vertices
-/// without them are taken from `optimized`. `report`: of times alone. In host memory.
-MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const SeedSet& relaxed,
-                              const OptimizedPatches& optimized, const PatchOptions& options, RemeshReport& report,
-                              OptimizeReport& optimize, Context& context);
+/// The mesh of the seeds that were optimised, with their cells and with all vertices that the dual's repair puts in.
+/// Patches in which it puts in none are taken as they were optimised. `report`: of times alone. In host memory.
+MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const OptimizedPatches& optimized,
+                              const PatchOptions& options, RemeshReport& report, OptimizeReport& sum, Context& context);
 
 }  // namespace isoshell

@@ -1,8 +1,6 @@
 // See own_faces.h.
 #include "pipeline/patches/own_faces.h"
 
-#include <utility>
-
 #include "core/watched.h"
 #include "features/mesh/remove_slivers.h"
 #include "features/mesh/weld_for_features.h"
@@ -41,17 +39,18 @@ void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport
   if (!united.changed_anything()) return;
   const InputTopology after = measure_topology(whole, context).topology;
   if (!after.closed || !after.oriented) return;
-  FeatureMesh mesh = run_with_threads(context, [&] { return weld_for_features(whole); });
-  mesh.rounding_world = searched.mesh.rounding_world;
-  p.own_faces_meet = run_with_threads(context, [&] { return meets_itself(mesh, p.surface.frame, context); });
-  if (p.own_faces_meet) return;
   report.warnings.push_back(
       counted(united.cut_faces, "face was", "faces were") +
       " cut where the part touches or crosses itself, to within rounding; creases are those of what "
       "it encloses");
-  searched.mesh = std::move(mesh);
-  run_with_threads(context,
-                   [&] { remove_slivers(searched.mesh, p.surface.frame, {}, edge_of_strips_world(p), context); });
+  const double rounding_world = searched.mesh.rounding_world;
+  run_with_threads(context, [&] {
+    searched.mesh = weld_for_features(whole);
+    searched.mesh.rounding_world = rounding_world;
+    remove_slivers(searched.mesh, p.surface.frame, {}, edge_of_strips_world(p), context);
+    p.own_faces_meet = meets_itself(searched.mesh, p.surface.frame, context);
+  });
+  check_cancel(context, "features");
   searched.creases.reset();
 }
 

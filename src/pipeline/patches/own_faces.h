@@ -6,10 +6,11 @@
 
 namespace isoshell {
 
-/// Cuts the mesh along itself where its own faces touch or pass through others, and keeps what they bound together: its
-/// triangles meet nowhere then, unless rounding to the lattice makes them: p.own_faces_meet. Its creases are to be
-/// found again. Where nothing meets, or that bounds no closed surface, or a vertex has more than 1024 triangles, it
-/// stays. The surface is closed and oriented. Cost: a search for faces that meet, one more where some do.
+/// Cuts the mesh along itself where its own faces touch or pass through others, and keeps what they bound together,
+/// without slivers. Its creases are to be found again. The mesh stays as it is where nothing meets, where that bounds
+/// no closed surface, where a vertex has more than 1024 triangles, and where rounding to the lattice makes the cut
+/// faces meet all the same, which p.own_faces_meet tells. The surface is closed and oriented. Cost: a search for faces
+/// that meet, and where some do the union, and another search.
 void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport& report, Context& context);
 
 }  // namespace isoshell

@@ -163,13 +163,12 @@ MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const Cu
                               const PatchOptions& options, RemeshReport& report, Context& context) {
   MeshOfPatches out;
   out.why_not = failure_reason([&]() -> std::string {
-    const SeedSet relaxed = host_copy(made.seeds);
     const PatchFaults faults = mesh_patches(p, *cut, made, options, report, context);
     if (!faults.what.empty() && options.previous) return faults.what;
     if (faults.what.empty()) {
       out.joined = timed(report, "angles", context,
                          [&] { return widened_to_count(*cut, made, join_options(options), context); });
-    } else if (auto mended = mend_patches(p, *cut, relaxed, faults, options, report, context)) {
+    } else if (auto mended = mend_patches(p, *cut, faults, options, report, context)) {
       out.joined = accepted(std::move(*mended), report);
     } else {
       return faults.what;

@@ -106,13 +106,12 @@ std::string join_relaxed(const PreparedSurface& p, SeededMesh& made, const Patch
                          JoinedPatches& joined, RemeshReport& report, Context& context) {
   const CutSurface& cut = *p.cut;
   const JoinOptions options = join_options(in_patches);
-  const SeedSet relaxed = host_copy(made.seeds);
   const PatchFaults faults = mesh_patches(p, cut, made, in_patches, report, context);
   if (faults.what.empty()) {
     joined = timed(report, "angles", context, [&] { return widened_to_count(cut, made, options, context); });
     return has_inverted(cut, joined) ? "a region would be inside out" : "";
   }
-  std::optional<MendedPatches> mended = mend_patches(p, cut, relaxed, faults, in_patches, report, context);
+  std::optional<MendedPatches> mended = mend_patches(p, cut, faults, in_patches, report, context);
   if (!mended) return faults.what;
   joined = accepted(std::move(*mended), report);
   return "";
