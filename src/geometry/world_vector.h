@@ -1,7 +1,6 @@
 // Vectors of the world, for host and device.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "isoshell/advanced/host_device.h"
@@ -43,8 +42,8 @@ ISOSHELL_HD inline double triangle_area(const WorldPoint& a, const WorldPoint& b
   return length(doubled_area(a, b, c)) / 2;
 }
 /// The least of the heights of a triangle; 0 where its corners are one point.
-inline double triangle_height(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
-  const double longest = std::sqrt(std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)}));
+ISOSHELL_HD inline double triangle_height(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
+  const double longest = std::sqrt(std::fmax(std::fmax(distance_sq(a, b), distance_sq(b, c)), distance_sq(c, a)));
   return longest > 0 ? length(doubled_area(a, b, c)) / longest : 0;
 }
 

@@ -21,9 +21,9 @@ constexpr int64_t kMostToGrow = 64;        // edges around a vertex: where more 
 constexpr double kMostBeside = .51;        // of a good chain; one side may turn, however much, when the other is flat
 constexpr double kMostBesideInPart = .75;  // of a crease of a component that has creases: both sides may be round
 constexpr double kLeastGoodShare = .75;  // of a component that has creases: crisp parts have .76 to 1, scans up to .62
-constexpr double kLong = 4;              // edges of the result, and of the input
-constexpr double kStrongDegrees = 70;    // in the mean: a long chain that turns so between flat sides is a crease
-constexpr double kMostBesideStrong = .35;  // of it
+constexpr double kLong = 4;  // a long chain has so many edges of the input, and is as long as so many of the result
+constexpr double kStrongDegrees = 70;      // a strong chain is long, and turns so much in the mean between flat sides
+constexpr double kMostBesideStrong = .35;  // of a strong chain
 constexpr double kLeastStrongShare = .15;  // of a component that has creases: scans have up to .1, thin round parts .25
 constexpr double kNearlyAll = .98;         // crisp parts have 1, a pool with a rim .72 to .95 when a drop falls into it
 constexpr size_t kParts = 12;              // in which chains are judged
@@ -179,8 +179,9 @@ class Judge {
     for (size_t c = 0; c < chains_.size(); ++c) {
       if (chains_[c].kind != CurveKind::crease) continue;
       judged[c] = {before ? 0 : component_[edges_.edges[chains_[c].edge[0]].face[0]], length_of(mesh_, chains_[c])};
-      judged[c].is_long = !before && judged[c].length_world >= kLong * reach_world_ &&
-                          double(chains_[c].edge.size()) >= kLong;  // a liquid with a rim is no part
+      // In a frame that follows another, strong chains do not count: the rim of a pool would come and go with drops.
+      judged[c].is_long =
+          !before && judged[c].length_world >= kLong * reach_world_ && double(chains_[c].edge.size()) >= kLong;
       of_component[judged[c].component].add(judged[c]);
     }
     for (size_t first = 0; first < kParts; ++first) {

@@ -16,7 +16,7 @@
 namespace isoshell {
 namespace {
 
-constexpr double kThinSteps = 8;  ///< of the lattice: what rounding may have flattened
+constexpr double kThinSteps = 8;  ///< of the lattice: as high as what remove_slivers takes for thin there
 
 WorldPoint without_negative_zero(const WorldPoint& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kMostOnCurves = 0.5;  ///< of the vertices, where creases are left out
 constexpr double kNearMost = 1.1;      ///< times as many are no reason to look again
-constexpr int kMostLooks = 3;          ///< edges are shorter where curves face others, which shows when they are cut
+constexpr int kMostLooks = 3;          ///< for creases that fit; edges are shorter where curves face others, once cut
 
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
 double six_volumes(const FeatureMesh& mesh) {
@@ -138,7 +138,7 @@ SharedCut make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource s
 }
 
 /// The same along as many creases as half of the vertices can hold, to within a tenth or as near as some looks come.
-/// Throws: as cut_surface, where no look succeeds.
+/// Throws: as cut_surface, at the first look.
 SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const CutSource& source, RemeshReport& report,
                           Context& context) {
   const FeatureMesh& mesh = plan.mesh;
@@ -161,8 +161,13 @@ SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const Cu
     report_found(mesh, network, all_found.border_loops > 0, found);
     found.border_loops = all_found.border_loops;
     found.length_world = all_found.length_world;
-    cut = make_cut(plan, network, std::move(fewer), found, context);
-    report.features = found;
+    const auto make = [&] {
+      cut = make_cut(plan, network, std::move(fewer), found, context);
+      report.features = found;
+      return std::string();
+    };
+    if (look == 1) make();
+    if (look > 1 && !failure_reason(make).empty()) break;  // what was cut before stays
     if (double(found.vertices) <= kNearMost * most) break;
     within_budget.most_vertices *= most / double(found.vertices);
   }

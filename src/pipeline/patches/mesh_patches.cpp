@@ -90,6 +90,26 @@ Buckets<uint32_t> vertices_by_patch(const CutSurface& cut, View<const uint32_t> 
                                      [&](int64_t v, auto put) { put(cut.surface.patch[home[v]], uint32_t(v)); });
 }
 
+/// Replaces patches by those of another mesh. `number`: per vertex of that its own in `made`; kNone: it is in none of
+/// them.
+void replace_patches(const CutSurface& cut, const PerPatch& replaced, const SeededMesh& from,
+                     const std::vector<uint32_t>& number, SeededMesh& made) {
+  std::vector<TriangleIndices> triangles;
+  for (const TriangleIndices& t : made.mesh.triangles)
+    if (!replaced[patch_of(cut, made, t.a)]) triangles.push_back(t);
+  for (uint32_t v = 0; v < number.size(); ++v) {
+    if (number[v] == kNone) continue;
+    made.mesh.position[number[v]] = from.mesh.position[v];
+    made.seeds.position[number[v]] = from.seeds.position[v];
+    made.seeds.normal[number[v]] = from.seeds.normal[v];
+    made.seeds.home[number[v]] = from.seeds.home[v];
+  }
+  for (const TriangleIndices& t : from.mesh.triangles)
+    if (number[t.a] != kNone) triangles.push_back({number[t.a], number[t.b], number[t.c]});
+  made.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
+  std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
+}
+
 /// Takes those of the chosen patches that have the same vertices as they were optimised. Result: the others of them.
 PerPatch take_optimized(const CutSurface& cut, const OptimizedPatches& from, const PerPatch& chosen, SeededMesh& made) {
   const Buckets<uint32_t> here = vertices_by_patch(cut, made.seeds.home.view()),
@@ -107,20 +127,7 @@ PerPatch take_optimized(const CutSurface& cut, const OptimizedPatches& from, con
     others[patch] = 0;
     for (int64_t i = 0; i < to.size; ++i) number[is[i]] = to[i];
   }
-  for (uint32_t v = 0; v < number.size(); ++v) {
-    if (number[v] == kNone) continue;
-    made.mesh.position[number[v]] = from.made.mesh.position[v];
-    made.seeds.position[number[v]] = from.made.seeds.position[v];
-    made.seeds.normal[number[v]] = from.made.seeds.normal[v];
-    made.seeds.home[number[v]] = from.made.seeds.home[v];
-  }
-  std::vector<TriangleIndices> triangles;
-  for (const TriangleIndices& t : made.mesh.triangles)
-    if (!is_taken[patch_of(cut, made, t.a)]) triangles.push_back(t);
-  for (const TriangleIndices& t : from.made.mesh.triangles)
-    if (number[t.a] != kNone) triangles.push_back({number[t.a], number[t.b], number[t.c]});
-  made.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
-  std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
+  replace_patches(cut, is_taken, from.made, number, made);
   return others;
 }
 
@@ -158,24 +165,13 @@ void optimize_in_place(const CutSurface& cut, const PerPatch& chosen, SeededMesh
   for (int64_t s = 0; s < part.seeds.fixed.count; ++s)
     number.push_back(made.seeds.fixed.of_vertex[piece.in_whole[part.seeds.home[s]]]);
   std::vector<char> is_used(size_t(made.seeds.size()), 0);
-  std::vector<TriangleIndices> triangles;
-  for (const TriangleIndices& t : made.mesh.triangles) {
-    if (!chosen[patch_of(cut, made, t.a)]) triangles.push_back(t);
-    is_used[t.a] = is_used[t.b] = is_used[t.c] = 1;
-  }
+  for (const TriangleIndices& t : made.mesh.triangles) is_used[t.a] = is_used[t.b] = is_used[t.c] = 1;
   for (int64_t s = made.seeds.fixed.count; s < made.seeds.size(); ++s)
     if (is_used[size_t(s)] && chosen[patch_of(cut, made, uint32_t(s))]) number.push_back(uint32_t(s));
   optimize(piece.cut, part, options, report, sum, context);
   bring_to_host(part);
-  for (size_t s = 0; s < number.size(); ++s) {
-    made.mesh.position[number[s]] = part.mesh.position[int64_t(s)];
-    made.seeds.position[number[s]] = part.seeds.position[int64_t(s)];
-    made.seeds.normal[number[s]] = part.seeds.normal[int64_t(s)];
-    made.seeds.home[number[s]] = piece.in_whole[part.seeds.home[int64_t(s)]];
-  }
-  for (const TriangleIndices& t : part.mesh.triangles) triangles.push_back({number[t.a], number[t.b], number[t.c]});
-  made.mesh.triangles = Buffer<TriangleIndices>(int64_t(triangles.size()));
-  std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
+  for (uint32_t& home : part.seeds.home) home = piece.in_whole[home];
+  replace_patches(cut, chosen, part, number, made);
 }
 
 /// Triangulates patches with faults anew that lie in a plane. Result: these.
