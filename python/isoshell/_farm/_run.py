@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import shlex
 import shutil
 import sys
 import time
+from concurrent.futures import wait
 from itertools import islice
 from queue import Empty, SimpleQueue
+from threading import Thread
 from typing import Any, Dict, List, NoReturn, Optional, Tuple
 
 import isoshell
@@ -168,12 +171,35 @@ def finished(cluster: Cluster, answers: SimpleQueue[Any]) -> List[Any]:
             found.append(answers.get_nowait())
     except Empty:
         pass
+    require_scheduler(cluster)
+    return found
+
+
+def require_scheduler(cluster: Cluster) -> None:
+    """Waits for one that is lost, for a while at most. Raises EngineLost."""
     end = time.monotonic() + SECONDS_TO_RECONNECT
     while cluster.client.status != "running":
         if time.monotonic() > end:
             raise no_answer(cluster)
         time.sleep(LOOK_SECONDS)
-    return found
+
+
+def result_of(cluster: Cluster, future: Any) -> manifest.Row:
+    """What a finished task returned. Future.result would wait for a scheduler that is lost meanwhile as long as a
+    connection may take. Raises EngineLost."""
+    fetched = asyncio.run_coroutine_threadsafe(cluster.client.gather(future, asynchronous=True),
+                                               cluster.client.loop.asyncio_loop)
+    try:
+        while not wait([fetched], timeout=LOOK_SECONDS).done:
+            require_scheduler(cluster)
+    except EngineLost:
+        fetched.cancel()
+        raise
+    try:
+        row: manifest.Row = fetched.result()
+    except Exception as lost:  # the asset is done, so what fails is the way to its row, through the scheduler
+        raise no_answer(cluster) from lost
+    return row
 
 
 def no_answer(cluster: Cluster) -> EngineLost:
@@ -187,11 +213,7 @@ def row_of(cluster: Cluster, future: Any, job: Dict[str, Any], deaths: int,
     if future.status == "cancelled":
         raise EngineLost("the scheduler has dropped its work")
     if error is None:
-        try:
-            row: manifest.Row = future.result()
-        except Exception as lost:  # the asset is done, so what fails is the way to its row, through the scheduler
-            raise no_answer(cluster) from lost
-        return row
+        return result_of(cluster, future)
     if isinstance(error, worker.Unwritable):
         raise error
     if isinstance(error, worker.Stopped):
@@ -210,13 +232,18 @@ def row_of(cluster: Cluster, future: Any, job: Dict[str, Any], deaths: int,
 
 def stop(cluster: Cluster, run: str) -> None:
     """End what is under way, on the workers of others without waiting for its end."""
+    def ask() -> None:
+        try:
+            cluster.client.run(worker.stop_soon, run, wait=False, on_error="ignore")
+        except Exception:
+            pass  # it is going anyhow
+
     worker.stop(run)
     if cluster.name == "local" or cluster.client.status != "running":
         return
-    try:
-        cluster.client.run(worker.stop_soon, run, wait=False, on_error="ignore")
-    except Exception:
-        pass  # it is going anyhow
+    asking = Thread(target=ask, daemon=True)
+    asking.start()
+    asking.join(SECONDS_TO_RECONNECT)  # the scheduler may be lost meanwhile
 
 
 def leave(cluster: Cluster, status: int) -> NoReturn:
