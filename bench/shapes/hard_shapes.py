@@ -7,8 +7,8 @@ chain.obj: 100 linked rings of 24 x 18 squares, 86,400 triangles. hair.obj: 3200
 out of a ball, 65,280 triangles. wing.obj: a swept, tapered NACA 2412 wing, 4,876 triangles, whose trailing edge is .001
 of the chord thick. Needs numpy.
 """
+import argparse
 import pathlib
-import sys
 
 import numpy as np
 
@@ -129,7 +129,9 @@ def write(path, parts):
 
 
 if __name__ == "__main__":
-    folder = pathlib.Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path)
+    folder = parser.parse_args().folder
     folder.mkdir(parents=True, exist_ok=True)
     for name, parts in {"chain": chain(), "hair": hair(), "wing": wing()}.items():
         write(folder / f"{name}.obj", parts)

@@ -45,13 +45,6 @@ struct FeatureReport {
   std::vector<LostCurve> lost;   ///< in the order of the curves, after the lines
 };
 
-/// Walls that were nearer to one another than edges can follow, and became one: the last resort against intersections.
-struct MergeReport {
-  int32_t grown_vox = 0;   ///< walls there grew so far to each side; 0: none were merged
-  int64_t places = 0;      ///< corners of triangles that intersected before
-  WorldPoint at{0, 0, 0};  ///< one of them
-};
-
 struct StageTime {
   std::string stage;
   double ms;
@@ -106,11 +99,9 @@ struct RemeshReport {
   int64_t seeds = 0;
   RelaxReport relax;
   DualReport dual;
-  OptimizeReport optimize;                  ///< of the final mesh, when is_optimized
-  bool is_optimized = false;                ///< false when cells failed: nothing is improved then, nor tested for
-                                            ///< intersections
-  int64_t seeds_against_intersections = 0;  ///< put in where triangles intersected; others were taken out for them
-  MergeReport merged;
+  OptimizeReport optimize;                    ///< of the final mesh, when is_optimized
+  bool is_optimized = false;                  ///< false when cells failed: nothing is improved then, nor tested for
+                                              ///< intersections
   std::optional<WorldPoint> intersection_at;  ///< a corner of triangles that intersect in the result
   SizingReport sizing;
   GapReport gaps;

@@ -15,30 +15,26 @@
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/timed.h"
+#include "pipeline/patches/mend_sheet.h"
 #include "pipeline/patches/patches.h"
 #include "pipeline/patches/sheet_when_needed.h"
 #include "pipeline/regions/mesh_of_regions.h"
 #include "pipeline/regions/region_walls.h"
 #include "pipeline/sheet/dual_of_seeds.h"
 #include "pipeline/sheet/flag_gaps.h"
-#include "pipeline/sheet/merge_walls.h"
 #include "pipeline/sheet/relax_meanwhile.h"
-#include "pipeline/sheet/resolve_intersections.h"
 #include "pipeline/sheet/warm_start.h"
 
 namespace isoshell {
 namespace {
 
-PatchOptions patch_options(const PreparedSurface& p, bool is_warm) {
-  return {{p.cut->seeds, p.options.seed},
+PatchOptions patch_options(const PreparedSurface& p, int64_t vertices, bool is_warm) {
+  return {{vertices, p.options.seed},
           relax_options(p.options),
           p.options.tolerance.has_value(),
           optimize_options(p.options),
           is_warm ? p.previous : nullptr};
 }
-
-/// Where a mesh goes on from: the vertices of the frame before, if the run has one, or new seeds.
-enum class Begin { as_prepared, cold };
 
 RelaxedSeeds relaxed_in_shell(const PreparedSurface& p, RemeshReport& report, Context& context) {
   const SeedOptions seeds{p.target.vertices, p.options.seed};
@@ -52,15 +48,15 @@ RelaxedSeeds relaxed_in_shell(const PreparedSurface& p, RemeshReport& report, Co
 }
 
 /// On the patches of a cut surface, or on the sheet. None where a mesh is to be made without.
-SeedSet relax_seeds(const PreparedSurface& p, Begin begin, bool in_patches, RemeshReport& report, Context& context) {
+SeedSet relax_seeds(const PreparedSurface& p, bool in_patches, RemeshReport& report, Context& context) {
   if (p.walls && p.walls->are_too_near) return {};
-  const bool is_warm = report.coherence.began_warm = begin == Begin::as_prepared && p.previous;
+  const bool is_warm = report.coherence.began_warm = p.previous != nullptr;
   RelaxedSeeds relaxed;
   if (!in_patches && !is_warm && p.options.method == Method::shell)
     relaxed = relaxed_in_shell(p, report, context);
   else
     relaxed = timed(report, "relax", context, [&] {
-      if (in_patches) return relax_in_patches(*p.cut, patch_options(p, is_warm), context);
+      if (in_patches) return relax_in_patches(*p.cut, patch_options(p, p.cut->seeds, is_warm), context);
       return is_warm ? relaxed_from_previous(p, context) : relaxed_by_levels(p, context);
     });
   report.relax = std::move(relaxed.report);
@@ -76,78 +72,13 @@ void mesh_on_sheet(const PreparedSurface& p, SeededMesh& made, RemeshReport& rep
   const bool is_warm = report.coherence.began_warm;
   const OptimizeOptions options = is_warm ? for_warm_frame(optimize_options(p.options)) : optimize_options(p.options);
   const int64_t count = is_warm ? p.target.vertices : made.seeds.size();
-  make_dual_of_seeds(p.sheet, {count, false, is_warm}, made, report, context);
+  make_dual_of_seeds(p.sheet, {count, is_warm}, made, report, context);
   if (report.dual.failed_cells > 0) return;
   OptimizedMesh optimized =
       timed(report, "post", context, [&] { return optimize_mesh(p.sheet, std::move(made), options, context); });
   report.optimize = optimized.report;
   made = std::move(optimized);
-  if (report.optimize.self_intersections > 0)
-    timed(report, "untangle", context, [&] { resolve_intersections(p, options, is_warm, made, report, context); });
   report.is_optimized = true;
-}
-
-/// A mesh on a sheet, and how it came about. Of two attempts that is kept which has fewer flaws.
-struct Attempt {
-  SeededMesh made;
-  RemeshReport report;
-
-  /// Cells that are no disks, before pairs of triangles that intersect.
-  std::pair<int64_t, int64_t> flaws() const { return {report.dual.failed_cells, report.optimize.self_intersections}; }
-};
-
-/// From new seeds. Result: why there is none, because of room or memory; empty otherwise.
-std::string try_on_sheet(const PreparedSurface& p, Attempt& attempt, Context& context) {
-  try {
-    return failure_reason([&]() -> std::string {
-      attempt.made = {};
-      attempt.made.seeds = relax_seeds(p, Begin::cold, false, attempt.report, context);
-      mesh_on_sheet(p, attempt.made, attempt.report, context);
-      return "";
-    });
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::out_of_memory) throw;
-    return error.what();
-  }
-}
-
-/// Puts another attempt on a sheet in the place of the one that there is, where it has fewer flaws. Its time counts
-/// anyway.
-bool keep_better(const PreparedSurface& p, Attempt& best, Context& context) {
-  Attempt other{{}, best.report};
-  const bool is_made = try_on_sheet(p, other, context).empty();
-  if (is_made && other.flaws() < best.flaws()) {
-    best = std::move(other);
-    return true;
-  }
-  best.report.times = std::move(other.report.times);
-  return false;
-}
-
-/// Merges walls where triangles intersect, and makes the mesh anew, while that leaves fewer that do. Null where nothing
-/// was merged.
-std::unique_ptr<MergedWalls> merge_where_crossing(const PreparedSurface& p, Attempt& best, Context& context) {
-  std::unique_ptr<MergedWalls> kept;
-  std::vector<PointQ8> points;
-  for (int merge = 0; merge < kMostMerges && best.report.optimize.self_intersections > 0; ++merge) {
-    const std::vector<PointQ8> more = crossing_corners(*OnHost(best.made.mesh), {});
-    points.insert(points.end(), more.begin(), more.end());
-    sort_points(points);  // a mesh that stays has the same ones again
-    auto merged = std::make_unique<MergedWalls>(
-        timed(best.report, "merge", context, [&] { return merge_walls(p, points, merge, context); }));
-    if (keep_better(merged->prepared, best, context)) kept = std::move(merged);
-  }
-  if (kept) report_merge(*kept, points, best.report);
-  return kept;
-}
-
-/// A frame that cannot be meshed from the one before begins cold, where that gives a better mesh.
-void begin_again_cold(const PreparedSurface& p, Attempt& best, Context& context) {
-  const auto [failed, crossing] = best.flaws();
-  if (!best.report.coherence.began_warm || (failed == 0 && crossing == 0)) return;
-  if (!keep_better(p, best, context)) return;
-  best.report.coherence.why_cold =
-      failed > 0 ? "cells of the carried vertices are no disks" : "triangles of the carried vertices intersect";
 }
 
 /// Numbers as in the frame before, where the mesh has not kept them, and how steady the frame is.
@@ -160,7 +91,7 @@ void follow_previous(const RemeshOptions& options, bool has_numbers, TriangleMes
 /// Where the grid is too coarse for that, too, the error says why it is tried.
 SeedSet relax_without_creases(const PreparedSurface& p, RemeshReport& report, Context& context) {
   try {
-    return relax_seeds(p, Begin::as_prepared, false, report, context);
+    return relax_seeds(p, false, report, context);
   } catch (const NoRoom& error) {
     throw NoRoom(error.stage(),
                  std::string(error.what()) + "; creases could not be kept either: " + report.features.given_up);
@@ -192,33 +123,66 @@ void report_count(const PreparedSurface& p, const TriangleMesh& mesh, RemeshRepo
   if (!count.is_met()) report.warnings.push_back(count.words());
 }
 
-/// From relaxed seeds, with all that is tried where the mesh has flaws.
-TriangleMesh triangulate_on_sheet(const PreparedSurface& p, Attempt& best, Context& context) {
-  const int64_t requested = best.report.coherence.began_warm ? p.target.vertices : best.made.seeds.size();
-  mesh_on_sheet(p, best.made, best.report, context);
-  begin_again_cold(p, best, context);
-  const std::unique_ptr<MergedWalls> merged = merge_where_crossing(p, best, context);
-  const PreparedSurface& meshed = merged ? merged->prepared : p;
-  warn_of_mesh(meshed, best.made, requested, best.report);
-  measure_edges(meshed.sheet, best.made.seeds, best.made.mesh, best.report.sizing, context);
-  TriangleMesh mesh = to_world(best.made.mesh, meshed.surface.frame);
-  flag_gaps(meshed, OnHost(best.made.seeds)->home.view(), mesh, best.report.gaps);
-  return mesh;
+/// A result, and whether its vertices have the numbers that they have in the frame before.
+struct Triangulated {
+  TriangleMesh mesh;
+  bool has_numbers = false;
+};
+
+/// Cells with flaws are mended. None where there is no room or memory for that: the mesh stays as it is then.
+std::optional<JoinedPatches> mended_on_sheet(const PreparedSurface& p, const SeededMesh& made, int64_t vertices,
+                                             RemeshReport& report, Context& context) {
+  std::optional<JoinedPatches> mended;
+  try {
+    failure_reason([&]() -> std::string {
+      mended = mend_sheet(p, made, patch_options(p, vertices, false), report, context);
+      return "";
+    });
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::out_of_memory) throw;
+  }
+  if (!mended) return {};
+  report.dual.failed_cells = 0;
+  report.is_optimized = true;
+  if (mended->mesh.position.size() > vertices)
+    report.count.why = "parts of the surface are nearer to one another than edges are long";
+  return mended;
+}
+
+/// From relaxed seeds.
+Triangulated triangulate_on_sheet(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Context& context) {
+  const bool is_warm = report.coherence.began_warm;
+  const int64_t requested = is_warm ? p.target.vertices : made.seeds.size();
+  mesh_on_sheet(p, made, report, context);
+  Triangulated out;
+  std::optional<JoinedPatches> mended;
+  if (report.dual.failed_cells + report.optimize.self_intersections > 0)
+    mended = mended_on_sheet(p, made, requested, report, context);
+  if (mended) {
+    out.mesh = to_world(mended->mesh, p.surface.frame);
+    flag_gaps(p, mended->home.view(), out.mesh, report.gaps);
+    return out;
+  }
+  warn_of_mesh(p, made, requested, report);
+  measure_edges(p.sheet, made.seeds, made.mesh, report.sizing, context);
+  out = {to_world(made.mesh, p.surface.frame), is_warm};
+  flag_gaps(p, OnHost(made.seeds)->home.view(), out.mesh, report.gaps);
+  return out;
 }
 
 /// On its patches, or where that fails on the sheet without curves.
-TriangleMesh triangulate_anyhow(const PreparedSurface& p, Attempt& best, Context& context) {
-  if (p.walls) return triangulate_regions(p, best.made, patch_options(p, false), best.report, context);
+Triangulated triangulate_anyhow(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Context& context) {
+  if (p.walls) return {triangulate_regions(p, made, patch_options(p, p.cut->seeds, false), report, context)};
   SheetWhenNeeded sheet(p, context);
-  if (!p.cut || best.made.seeds.fixed.count == 0) return triangulate_on_sheet(sheet.get(best.report), best, context);
-  const PatchOptions in_patches = patch_options(p, best.report.coherence.began_warm);
-  if (std::optional<TriangleMesh> mesh = triangulate_patches(p, sheet, best.made, in_patches, best.report, context))
-    return std::move(*mesh);
-  best.report.optimize = {};
-  const PreparedSurface& whole = sheet.get(best.report);
-  if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, best.report);
-  best.made.seeds = relax_without_creases(whole, best.report, context);
-  return triangulate_on_sheet(whole, best, context);
+  if (!p.cut || made.seeds.fixed.count == 0) return triangulate_on_sheet(sheet.get(report), made, report, context);
+  const PatchOptions in_patches = patch_options(p, p.cut->seeds, report.coherence.began_warm);
+  if (std::optional<TriangleMesh> mesh = triangulate_patches(p, sheet, made, in_patches, report, context))
+    return {std::move(*mesh)};
+  report.optimize = {};
+  const PreparedSurface& whole = sheet.get(report);
+  if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, report);
+  made.seeds = relax_without_creases(whole, report, context);
+  return triangulate_on_sheet(whole, made, report, context);
 }
 
 }  // namespace
@@ -226,20 +190,20 @@ TriangleMesh triangulate_anyhow(const PreparedSurface& p, Attempt& best, Context
 Relaxed relax(const Prepared& prepared, Context& context) {
   const PreparedSurface& p = PreparedParts::of(prepared);
   Relaxed relaxed{{}, p.report};
-  relaxed.seeds = relax_seeds(p, Begin::as_prepared, p.cut != nullptr, relaxed.report, context);
+  relaxed.seeds = relax_seeds(p, p.cut != nullptr, relaxed.report, context);
   return relaxed;
 }
 
 RemeshResult triangulate(const Prepared& prepared, Relaxed relaxed, Context& context) {
   const PreparedSurface& p = PreparedParts::of(prepared);
-  Attempt best{{}, std::move(relaxed.report)};
-  best.made.seeds = std::move(relaxed.seeds);
-  TriangleMesh mesh = triangulate_anyhow(p, best, context);
-  const bool is_in_patches = best.report.features.kept;
-  report_count(p, mesh, best.report);
-  follow_previous(p.options, best.report.coherence.began_warm && !is_in_patches, mesh, best.report);
-  note_digest(p.options, best.report, context, "mesh", mesh);
-  return {std::move(mesh), std::move(best.report)};
+  RemeshReport report = std::move(relaxed.report);
+  SeededMesh made;
+  made.seeds = std::move(relaxed.seeds);
+  Triangulated out = triangulate_anyhow(p, made, report, context);
+  report_count(p, out.mesh, report);
+  follow_previous(p.options, out.has_numbers, out.mesh, report);
+  note_digest(p.options, report, context, "mesh", out.mesh);
+  return {std::move(out.mesh), std::move(report)};
 }
 
 RemeshResult remesh(const TriangleSoup& soup, const RemeshOptions& requested, Context& context) {

@@ -36,7 +36,7 @@ constexpr Row kWithoutCurves[] = {
 constexpr Row kWithCurves[] = {
     {"relax", "", 0, 165, 0},
     {"triangulate", "post", 0, 110, 0},
-    {"triangulate", "untangle", 0, 50, 0},
+    {"triangulate", "coarsen", 0, 50, 0},
     {"triangulate", "features", 0, 5, 0},
     {"triangulate", "relax", 0, 10, 0},
     {"triangulate", "", 0, 10, 0},

@@ -140,13 +140,6 @@ Json attributes_json(const AttributeReport& r) {
   return {{"kept", kept}, {"dropped", dropped}};
 }
 
-/// Walls that became one.
-Json merged_json(const RemeshReport& r) {
-  if (r.merged.grown_vox == 0) return nullptr;
-  return {
-      {"grown", r.merged.grown_vox * r.grid.frame.voxel_size}, {"places", r.merged.places}, {"at", point(r.merged.at)}};
-}
-
 Json topology_json(const RunRecord& r) {
   Json j = {{"components", nullptr},
             {"genus", nullptr},
@@ -157,14 +150,12 @@ Json topology_json(const RunRecord& r) {
             {"nonmanifold_vertices", nullptr},
             {"self_intersections", r.report.is_optimized ? Json(r.report.optimize.self_intersections) : Json()},
             {"intersection_at", point(r.report.intersection_at)},
-            {"merged", merged_json(r.report)},
             {"sheet_components", r.report.sheet.topology.components},
             {"sheet_genus", r.report.sheet.topology.genus},
             {"cut_handles", r.report.sheet.topology.cut_handles},
             {"agrees_with_input", r.report.sheet.is_compared ? Json(r.report.sheet.agrees) : Json()},
             {"failed_cells", r.report.dual.failed_cells},
-            {"inserted_seeds", r.report.dual.inserted_seeds},
-            {"seeds_against_intersections", r.report.seeds_against_intersections}};
+            {"inserted_seeds", r.report.dual.inserted_seeds}};
   if (!r.topology) return j;
   const MeshTopology& t = *r.topology;
   j["components"] = t.components;

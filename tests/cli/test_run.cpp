@@ -109,11 +109,14 @@ TEST_CASE("run: a gate that fails exits with 6 and still writes the mesh", "[cli
 }
 
 TEST_CASE("run: a result that intersects itself exits with 6 and is written, unless that is allowed", "[cli]") {
-  Folder folder;  // a hollow ball: four vertices for each side cannot follow its wall, however thick that is made
-  folder.write_off("hollow.off", shapes::together(shapes::sphere({0, 0, 0}, 1, 32),
-                                                  shapes::inside_out(shapes::sphere({0, 0, 0}, .97, 32))));
-  const std::string few = " --vertices 8 --resolution 140 --device cpu ";
-  const auto r = folder.run("hollow.off out.ply --stats out.json" + few);
+  Folder folder;  // two squares that cross
+  TriangleSoup squares;
+  squares.vertices = {{-1, -1, 0},  {1, -1, 0},  {1, 1, 0},  {-1, 1, 0},
+                      {.1, -1, -1}, {.1, 1, -1}, {.1, 1, 1}, {.1, -1, 1}};
+  squares.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  folder.write_off("squares.off", squares);
+  const std::string few = " --vertices 100 --boundary keep --device cpu ";
+  const auto r = folder.run("squares.off out.ply --stats out.json" + few);
   CHECK(r.status == 6);
   CHECK(contains(r.err, "pairs of triangles intersect, near "));
   CHECK(contains(r.err, "gate failed: the result intersects itself in "));
@@ -121,11 +124,24 @@ TEST_CASE("run: a result that intersects itself exits with 6 and is written, unl
   const Json j = Json::parse(folder.content("out.json"));
   CHECK(j["topology"]["self_intersections"] > 0);
   CHECK(j["topology"]["intersection_at"].size() == 3);
-  CHECK(read_mesh((folder / "out.ply").string()).vertices.size() == 8);
-  const auto allowed = folder.run("hollow.off allowed.ply --allow-intersections" + few);
+  CHECK(read_mesh((folder / "out.ply").string()).vertices.size() == 100);
+  const auto allowed = folder.run("squares.off allowed.ply --allow-intersections" + few);
   CHECK(allowed.status == 0);
   CHECK(contains(allowed.err, "pairs of triangles intersect, near "));
   CHECK(folder.content("allowed.ply") == folder.content("out.ply"));
+}
+
+TEST_CASE("run: a wall that so few vertices cannot follow takes more, and a warning says why", "[cli]") {
+  Folder folder;  // a hollow ball: four vertices for each side are too few, however thick its wall is made
+  folder.write_off("hollow.off", shapes::together(shapes::sphere({0, 0, 0}, 1, 32),
+                                                  shapes::inside_out(shapes::sphere({0, 0, 0}, .97, 32))));
+  const auto r = folder.run("hollow.off out.ply --stats out.json --vertices 8 --resolution 140 --device cpu");
+  CHECK(r.status == 0);
+  const Json j = Json::parse(folder.content("out.json"));
+  CHECK(j["topology"]["self_intersections"] == 0);
+  CHECK(j["topology"]["components"] == 2);
+  CHECK(contains(r.err, " vertices instead of 8: parts of the surface are nearer to one another than edges are long"));
+  CHECK(read_mesh((folder / "out.ply").string()).vertices.size() < 20);
 }
 
 TEST_CASE("run: standard input and output carry meshes, and the same bytes as files", "[cli]") {

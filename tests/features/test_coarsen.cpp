@@ -19,7 +19,8 @@ TEST_CASE("narrow facets of a cylinder are collapsed to even triangles with the 
     cylinder.mesh.source_face.resize(cylinder.mesh.triangles.size());
     std::iota(cylinder.mesh.source_face.begin(), cylinder.mesh.source_face.end(), 0u);
     const CutSurface cut = cut_of(cylinder);
-    const PatchMesh made = coarsen_walls(cut, all_triangles_of(cut), {150}, context);
+    WallMesh made(cut, all_triangles_of(cut));
+    coarsen_walls(made, 150, context);
     CHECK(made.vertex_count() == 150);
     double shortest = 1e30, longest = 0, narrowest = 1;
     for (const RegionTriangle& t : made.triangles()) {

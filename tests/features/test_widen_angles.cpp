@@ -6,7 +6,7 @@
 #include <set>
 
 #include "features/angles/mesh_region.h"
-#include "features/angles/widen_angles.h"
+#include "features/walls/coarsen_walls.h"
 #include "isoshell/mesh_topology.h"
 #include "measure/crossings.h"
 #include "support/catch.h"
@@ -60,7 +60,7 @@ TEST_CASE("wide angles: fewer triangles are poor, none is worse than the worst, 
     const Made made = hardly_relaxed(shape, context);
     if (made.mesh.report.failed_cells > 0) continue;
     const JoinedMesh joined = join_patches(made.mesh.mesh, made.mesh.seeds.fixed);
-    const JoinedPatches wide = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, context);
+    const JoinedPatches wide = widened_to_count(made.cut, made.mesh, {count_of(made.mesh)}, context);
     CHECK(wide.mesh.position.size() == joined.mesh.position.size());
     CHECK(wide.home.size() == wide.mesh.position.size());
     CHECK(int64_t(wide.features.patch.size()) == wide.mesh.triangles.size());
@@ -85,10 +85,10 @@ TEST_CASE("wide angles: poor triangles that there are too many of are counted an
   const JoinedMesh joined = join_patches(made.mesh.mesh, made.mesh.seeds.fixed);
   REQUIRE(poor_of(joined.mesh) > 0);
   const JoinOptions no_tries{count_of(made.mesh), false, 0};
-  const JoinedPatches same = join_and_widen(made.cut, made.mesh, no_tries, context);
+  const JoinedPatches same = widened_to_count(made.cut, made.mesh, no_tries, context);
   CHECK(same.left_alone == poor_of(joined.mesh));
   CHECK(poor_of(same.mesh) == poor_of(joined.mesh));
-  CHECK(join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, context).left_alone == 0);
+  CHECK(widened_to_count(made.cut, made.mesh, {count_of(made.mesh)}, context).left_alone == 0);
 }
 
 TEST_CASE("wide angles: curves are the same, in edges between places on them", "[widen_angles][stage]") {
@@ -97,7 +97,7 @@ TEST_CASE("wide angles: curves are the same, in edges between places on them", "
     INFO(shape.name);
     const Made made = hardly_relaxed(shape, context);
     if (made.mesh.report.failed_cells > 0) continue;
-    const JoinedPatches wide = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, context);
+    const JoinedPatches wide = widened_to_count(made.cut, made.mesh, {count_of(made.mesh)}, context);
     std::map<uint32_t, std::set<Place>> places;  // per curve of the network
     for (const CutCurve& curve : made.cut.curves)
       for (const uint32_t p : curve.place)
@@ -123,8 +123,8 @@ TEST_CASE("wide angles: are the same for every number of threads", "[widen_angle
   one.threads = 1;
   const FeatureShape shape = feature_plate();
   const Made made = hardly_relaxed(shape, many);
-  const JoinedPatches a = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, one),
-                      b = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, many);
+  const JoinedPatches a = widened_to_count(made.cut, made.mesh, {count_of(made.mesh)}, one),
+                      b = widened_to_count(made.cut, made.mesh, {count_of(made.mesh)}, many);
   REQUIRE(a.mesh.position.size() == b.mesh.position.size());
   for (int64_t v = 0; v < a.mesh.position.size(); ++v)
     CHECK(place_of(a.mesh.position[v]) == place_of(b.mesh.position[v]));
@@ -137,7 +137,7 @@ TEST_CASE("wide angles: no triangles come to intersect, and none to be there twi
     const Made made = hardly_relaxed(shape, context);
     if (made.mesh.report.failed_cells > 0) continue;
     const JoinedMesh joined = join_patches(made.mesh.mesh, made.mesh.seeds.fixed);
-    const JoinedPatches wide = join_and_widen(made.cut, made.mesh, {count_of(made.mesh)}, context);
+    const JoinedPatches wide = widened_to_count(made.cut, made.mesh, {count_of(made.mesh)}, context);
     const auto crossing = [&](const DualMesh& mesh) {
       return crossing_pairs(mesh.position.view(), mesh.triangles.view(), {}, context.cancel).size();
     };

@@ -205,18 +205,16 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
     return made(std::move(run.mesh), "seeds " + digest_text(hash_arrays(run.seeds)));
   });
   both.stage("mesh with edges collapsed and ids kept", &Products::dual, [](const Products& p, Context& c) {
-    SeededMesh run = collapse_edges(p.sheet, seeded_mesh_of(p), {p.seeds.size() * 4 / 5, false, true}, c);
+    SeededMesh run = collapse_edges(p.sheet, seeded_mesh_of(p), {p.seeds.size() * 4 / 5, true}, c);
     return made(std::move(run.mesh), "seeds " + digest_text(hash_arrays(run.seeds)));
   });
-  both.stage("mesh without intersections", &Products::dual, [](const Products& p, Context& c) {
+  both.stage("improved mesh without intersections", &Products::dual, [](const Products& p, Context& c) {
     UntangledSheet start = untangle_sheet(to_host(p.sheet), to_host(p.seeds), c);
-    const int64_t requested = start.seeds.size();
-    Triangulation dual = triangulate_dual(start.sheet, std::move(start.seeds), {64, requested}, c);
-    const DualReport report = dual.report;
-    SeededMesh run = std::move(dual);
-    if (report.failed_cells == 0) run = collapse_edges(start.sheet, std::move(run), {requested, true}, c);
-    return made(std::move(run.mesh), std::to_string(start.self_intersections) + " left, " + text_of(report) +
-                                         ", seeds " + digest_text(hash_arrays(run.seeds)) + ", sheet " +
+    OptimizeOptions careful;
+    careful.keep_apart = true;
+    OptimizedMesh run = optimize_mesh(start.sheet, {to_host(p.dual), std::move(start.seeds)}, careful, c);
+    return made(std::move(run.mesh), std::to_string(start.self_intersections) + " left, seeds " +
+                                         digest_text(hash_arrays(run.seeds)) + ", sheet " +
                                          digest_text(hash_arrays(start.sheet)));
   });
 }

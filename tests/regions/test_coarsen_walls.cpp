@@ -28,10 +28,10 @@ Coarse coarsened(const LabelVolume& volume, int64_t vertices, Context& context) 
   RemeshReport report;
   const PreparedSurface p = prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
   const FeatureMesh& walls = p.walls->mesh;
-  Coarse out{
-      coarsen_walls(*p.cut, {walls.triangles, walls.source_face, walls.vertices.size()}, {vertices}, context).joined(),
-      {},
-      0};
+  WallMesh mesh(*p.cut, {walls.triangles, walls.source_face, walls.vertices.size()});
+  coarsen_walls(mesh, vertices, context);
+  const auto lookup = mesh.shared_lookup();
+  Coarse out{PatchMesh(lookup, std::move(mesh), {vertices}).joined(), {}, 0};
   out.before = int64_t(walls.vertices.size());
   out.regions.background = volume.background;
   const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(*p.cut);

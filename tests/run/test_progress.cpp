@@ -97,7 +97,7 @@ TEST_CASE("progress: rounds and stages that nobody expected slow it down, and ne
     }
   told.meter.end("prepare");
   const double before = told.fraction();
-  told.meter.expect({{"triangulate", "post", 300}, {"triangulate", "untangle", 100}});
+  told.meter.expect({{"triangulate", "post", 300}, {"triangulate", "coarsen", 100}});
   told.meter.begin("triangulate");
   CHECK(told.fraction() == before);
   CHECK(told.seconds_left() > 300);

@@ -123,13 +123,13 @@ TEST_CASE("open collapse: free vertices go, borders stay, and the topology with 
       const int64_t fixed = m.seeds.fixed.count, target = fixed + (m.seeds.size() - fixed) / part;
       SeedSet plain_seeds = to_host(m.seeds);
       DualMesh plain_mesh = to_host(m.mesh);
-      collapse_edges(m.surface, target, m.seeds, m.mesh, context, part == 8);
+      collapse_edges(m.surface, target, m.seeds, m.mesh, context);
       CHECK(m.seeds.size() >= target);
       CHECK(m.seeds.size() < before.size());
       check_result(m, before, "collapsed");
       Context on_cpu;
       PlainExecutor exec(on_cpu, "test");
-      collapse_edges_body(exec, m.surface, {target, part == 8}, plain_seeds, plain_mesh);
+      collapse_edges_body(exec, m.surface, {target}, plain_seeds, plain_mesh);
       CHECK(hash_arrays(m.mesh) == hash_arrays(plain_mesh));
       OptimizeOptions options;
       optimize_mesh(m.surface, options, m.seeds, m.mesh, context);

@@ -1,6 +1,8 @@
-// Ways to a mesh without intersections: the sheet goes back to its lattice corners, cells of triangles that intersect
-// are split, edges whose loss would make triangles intersect stay.
+// Ways to a mesh without intersections: the sheet goes back to its lattice corners, cells around triangles that
+// intersect are simplified, flips that would make triangles intersect are not made.
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "cpu/executor_tbb.h"
 #include "isoshell/advanced/stages.h"
@@ -49,11 +51,11 @@ struct Meshed {
   DualMesh mesh;
   DualReport report;
 };
-Meshed meshed(const Sheet& sheet, int64_t count, int64_t most_against_crossing, TestContext& context) {
+Meshed meshed(const Sheet& sheet, int64_t count, TestContext& context) {
   Meshed m;
   m.seeds = place_seeds(sheet, {count, 4}, context);
   relax_on_sheet(sheet, m.seeds, {20}, context);
-  m.mesh = triangulate_dual(sheet, m.seeds, {64, most_against_crossing}, m.report, context);
+  m.mesh = triangulate_dual(sheet, m.seeds, {}, m.report, context);
   REQUIRE(m.report.failed_cells == 0);
   return m;
 }
@@ -97,8 +99,12 @@ Sheet thin_sheet(TestContext& context) {
   REQUIRE(untangled.self_intersections == 0);
   return to_host(untangled.sheet);
 }
-constexpr int64_t kFewSeeds = 80;
-constexpr int64_t kAnyNumber = 1 << 20;
+constexpr int64_t kFewSeeds = 170;
+
+bool warns_of(const RemeshReport& report, const std::string& what) {
+  return std::any_of(report.warnings.begin(), report.warnings.end(),
+                     [&](const std::string& text) { return text.find(what) != std::string::npos; });
+}
 
 }  // namespace
 
@@ -140,47 +146,13 @@ TEST_CASE("untangle: only vertices of triangles that intersect move, and their s
   CHECK(seeds_moved < 15);
 }
 
-TEST_CASE("dual: cells of triangles that intersect are split until none do", "[dual][stage]") {
-  TestContext context;
-  const Sheet sheet = thin_sheet(context);
-  const Meshed asked_nothing = meshed(sheet, kFewSeeds, 0, context);
-  const int64_t pairs = count_intersections(sheet, asked_nothing.mesh.triangles, asked_nothing.mesh.position);
-  REQUIRE(pairs > 0);
-  const Meshed split = meshed(sheet, kFewSeeds, kAnyNumber, context);
-  CHECK(count_intersections(sheet, split.mesh.triangles, split.mesh.position) == 0);
-  CHECK(split.report.inserted_seeds > asked_nothing.report.inserted_seeds);
-  CHECK(split.seeds.size() == split.mesh.position.size());
-  const MeshTopology t = check_mesh(split.mesh.triangles.view(), split.mesh.position.size());
-  CHECK(t.is_closed_manifold());
-  CHECK(t.components == sheet.topology.components);
-  const Meshed few = meshed(sheet, kFewSeeds, 3, context);
-  CHECK(few.report.inserted_seeds <= asked_nothing.report.inserted_seeds + 3);
-}
-
-TEST_CASE("collapse: an edge whose loss would make triangles intersect stays", "[collapse][stage]") {
-  TestContext context;
-  const Sheet sheet = thin_sheet(context);
-  for (const bool keep_apart : {false, true}) {
-    Meshed m = meshed(sheet, kFewSeeds, kAnyNumber, context);
-    const int64_t before = m.seeds.size();
-    collapse_edges(sheet, kFewSeeds, m.seeds, m.mesh, context, keep_apart);
-    const int64_t pairs = count_intersections(sheet, m.mesh.triangles, m.mesh.position);
-    CHECK(check_mesh(m.mesh.triangles.view(), m.mesh.position.size()).is_closed_manifold());
-    CHECK(m.seeds.size() < before);
-    if (keep_apart)
-      CHECK(pairs == 0);
-    else
-      CHECK(pairs > 0);
-  }
-}
-
-TEST_CASE("optimize: flips that would make triangles intersect where vertices began are not made",
+TEST_CASE("optimize: flips that would make more triangles intersect where vertices began are not made",
           "[optimize][stage]") {
   TestContext context;
   const Sheet sheet = thin_sheet(context);
   for (const bool keep_apart : {false, true}) {
-    Meshed m = meshed(sheet, kFewSeeds, kAnyNumber, context);
-    REQUIRE(count_intersections(sheet, m.mesh.triangles, m.mesh.position) == 0);
+    Meshed m = meshed(sheet, kFewSeeds, context);
+    const int64_t before = count_intersections(sheet, m.mesh.triangles, m.mesh.position);
     OptimizeOptions options;
     options.keep_apart = keep_apart;
     options.smoothing_steps = 0;
@@ -189,9 +161,9 @@ TEST_CASE("optimize: flips that would make triangles intersect where vertices be
     const int64_t pairs = count_intersections(sheet, m.mesh.triangles, m.mesh.position);
     CHECK(check_mesh(m.mesh.triangles.view(), m.mesh.position.size()).is_closed_manifold());
     if (keep_apart)
-      CHECK(pairs == 0);
+      CHECK(pairs <= before);
     else
-      CHECK(pairs > 0);
+      CHECK(pairs > before);
   }
 }
 
@@ -205,6 +177,6 @@ TEST_CASE("untangle: a thin wavy plate with few vertices becomes a mesh without 
     const RemeshResult result = remesh(wavy_plate(60, 0.07), options, context.plain());
     CHECK(result.report.optimize.self_intersections == 0);
     CHECK(result.mesh.vertices.size() == 200);
-    CHECK(result.report.seeds_against_intersections > 0);
+    CHECK(warns_of(result.report, "vertices edges were collapsed"));
   }
 }

@@ -94,9 +94,8 @@ inline SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh,
   return to_host(subdivide_seeds(surface, mesh, seeds, target, context.plain()));
 }
 inline void collapse_edges(const SurfaceMesh& surface, int64_t target, SeedSet& seeds, DualMesh& mesh,
-                           TestContext& context, bool keep_apart = false) {
-  const SeededMesh left =
-      collapse_edges(surface, {std::move(mesh), std::move(seeds)}, {target, keep_apart}, context.plain());
+                           TestContext& context) {
+  const SeededMesh left = collapse_edges(surface, {std::move(mesh), std::move(seeds)}, {target}, context.plain());
   seeds = to_host(left.seeds);
   mesh = to_host(left.mesh);
 }

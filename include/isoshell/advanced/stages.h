@@ -188,9 +188,8 @@ struct DualReport {
   int64_t failed_cells = 0;  ///< left after the last round; 0 means the guarantee holds
 };
 struct DualOptions {
-  int32_t max_repair_rounds = 64;     ///< 0 only checks
-  int64_t most_against_crossing = 0;  ///< seeds put in where triangles of the dual intersect; 0: not looked for
-  bool keep_cells = false;            ///< fills Triangulation::cell
+  int32_t max_repair_rounds = 64;  ///< 0 only checks
+  bool keep_cells = false;         ///< fills Triangulation::cell
 };
 struct Triangulation : SeededMesh {
   Buffer<uint32_t> cell;  ///< per vertex of the surface the seed whose cell it is in; only where asked for
@@ -199,13 +198,11 @@ struct Triangulation : SeededMesh {
 /// DualTriangulation(V_k) on the surface: a triangle whose vertices carry three labels is a face. Four checks
 /// (cells in one piece, cells are disks, pairs meet in one arc, four cells a component) are repaired by splitting
 /// cells; ids are kept, and a seed that owns nothing moves to the next split before seeds are appended. Result: when
-/// report.failed_cells is 0, a closed orientable 2-manifold homeomorphic to the surface that uses every seed. Where
-/// asked to, it then splits the cells of triangles that intersect, and puts the seeds of both halves in their middles,
-/// until no triangles do or no more seeds may be put in; on a surface without intersections enough seeds always end
-/// them. Cost: labels, then O(surface) and O(split cells) a round; 14 bytes a vertex of the surface. Needs a closed
-/// surface, or borders with three fixed seeds or more each. Then the result is homeomorphic to the surface, with the
-/// edges between successive fixed seeds as its borders; fixed seeds stay as they are, new ones are free, and no edge is
-/// there twice once patches are joined. Throws: usage when there are no seeds or more than vertices.
+/// report.failed_cells is 0, a closed orientable 2-manifold homeomorphic to the surface that uses every seed. Cost:
+/// labels, then O(surface) and O(split cells) a round; 14 bytes a vertex of the surface. Needs a closed surface, or
+/// borders with three fixed seeds or more each. Then the result is homeomorphic to the surface, with the edges between
+/// successive fixed seeds as its borders; fixed seeds stay as they are, new ones are free, and no edge is there twice
+/// once patches are joined. Throws: usage when there are no seeds or more than vertices.
 Triangulation triangulate_dual(const SurfaceMesh& surface, SeedSet&& seeds, const DualOptions& options,
                                Context& context);
 
@@ -216,9 +213,8 @@ SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const 
                         Context& context);
 
 struct CollapseOptions {
-  int64_t target = 0;       ///< vertices to be left, every copy of a fixed one counted
-  bool keep_apart = false;  ///< no edge is taken where triangles would intersect then
-  bool keep_ids = false;    ///< ids below the vertices left stay, and what stays of the others takes the ids set free
+  int64_t target = 0;     ///< vertices to be left, every copy of a fixed one counted
+  bool keep_ids = false;  ///< ids below the vertices left stay, and what stays of the others takes the ids set free
 };
 /// Takes vertices out of a closed mesh, with their seeds, until `target` are left: makes one vertex of the two ends of
 /// an edge, short edges first (beside the lengths there), rather those whose loss makes valences more even. The

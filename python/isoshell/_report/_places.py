@@ -57,10 +57,6 @@ def _of_statistics(report: dict[str, Any], edge: float) -> Iterable[Kind]:
     poor = sorted(quality.get("poor_angles", []), key=lambda angle: float(angle["degrees"]))
     yield _kind("Poor angles", [Place(f"{angle['degrees']:.1f}°", np.array(angle["at"]), 6 * edge) for angle in poor],
                 count=max(len(poor), int(quality.get("below_30_deg", 0)) if poor else 0), tone="poor")
-    merged = topology["merged"]
-    if merged and merged["at"]:
-        yield _kind("Walls merged", [Place(f"the first of {merged['places']}, closer than {number(merged['grown'])}",
-                                           np.array(merged["at"]), 10 * edge)], count=int(merged["places"]))
     united = report["input"]["united"]
     if united["not_joined_at"]:
         yield _kind("Parts that were not united",

@@ -40,8 +40,7 @@ UNITED = {
 }
 BRIDGED = {"loops": "holes and gaps closed", "widest": "width of the widest",
            "area": "area without a surface of the input", "vertices": "vertices of the result there"}
-TREATED = {"cut_handles": "handles cut", "failed_cells": "cells that failed", "inserted_seeds": "seeds inserted",
-           "seeds_against_intersections": "seeds inserted against intersections"}
+TREATED = {"cut_handles": "handles cut", "failed_cells": "cells that failed", "inserted_seeds": "seeds inserted"}
 
 
 MOST_REGIONS = 40  # of the table

@@ -12,7 +12,6 @@ constexpr double kGoodSine = 0.587785;  ///< of 36 degrees
 constexpr double kCostOfPoor = 0.05;    ///< of any angle below 30 degrees, beside its own
 constexpr double kCostOfTurn = 200;     ///< a normal 30 degrees off weighs as much as an angle of 17 degrees
 constexpr double kMostOffCurve = 0.03;  ///< edges from the curve to its chord
-constexpr double kMuchLess = 0.8;       ///< of the cost, where more triangles are poor than before
 constexpr double kCostOfChord = 0.4;    ///< at twice as far
 
 }  // namespace
@@ -82,8 +81,7 @@ std::array<size_t, 2> MeshRegion::span(uint32_t u, uint32_t v, uint32_t curve) c
 }
 
 bool MeshRegion::is_better_than(const MeshRegion& start) const {
-  const bool is_improved = poor() <= start.poor() || cost() < kMuchLess * start.cost();
-  return is_improved && worst_sine() >= start.worst_sine();
+  return poor() <= start.poor() && worst_sine() >= start.worst_sine();
 }
 
 }  // namespace isoshell

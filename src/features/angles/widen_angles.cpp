@@ -1,4 +1,4 @@
-// join_and_widen (see widen_angles.h).
+// widen (see widen_angles.h).
 #include "features/angles/widen_angles.h"
 
 #include "core/watched.h"
@@ -18,13 +18,6 @@ void widen(PatchMesh& mesh, const Context& context) {
     }
     mesh.meet_count(context);
   });
-}
-
-JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,
-                             const Context& context) {
-  PatchMesh mesh = run_with_threads(context, [&] { return PatchMesh(cut, made, options); });
-  widen(mesh, context);
-  return mesh.joined();
 }
 
 }  // namespace isoshell

@@ -13,8 +13,4 @@ namespace isoshell {
 /// millisecond a poor triangle, for no more of them than options allow; some more for the last sixteen.
 void widen(PatchMesh& mesh, const Context& context);
 
-/// The same of patches that are put together first.
-JoinedPatches join_and_widen(const CutSurface& cut, const SeededMesh& made, const JoinOptions& options,
-                             const Context& context);
-
 }  // namespace isoshell

@@ -2,6 +2,7 @@
 #include "features/walls/coarsen.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <limits>
 #include <queue>
 #include <utility>
@@ -9,11 +10,13 @@
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
 #include "features/walls/wall_blocks.h"
+#include "geometry/triangle_search.h"
 
 namespace isoshell {
 namespace {
 
 constexpr double kErrorWeight = 2;  ///< of the squared distance from the walls, beside that of a squared edge
+constexpr double kTipWeight = 10;   ///< of the squared distance of a point that went from what is left
 constexpr double kMostNarrow = 30;  ///< sum of the squared edges of a triangle over twice its area
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kCheap = 0.75;                    ///< squares of edges of the result: what costs less goes anyhow
@@ -46,6 +49,7 @@ struct Quadric {
 /// What is known of the vertices.
 struct Known {
   std::vector<Quadric> quadric;  ///< of the triangles that were around each and what it took in
+  std::vector<WorldPoint> tip;   ///< of its own place and those that each took in the farthest from its triangles
   std::vector<double> least;     ///< cost with which each is in a queue; kNever: in none
 };
 
@@ -84,9 +88,11 @@ class Coarsening {
     return !blocks_ || (!mesh_.vertex(v).is_settled && blocks_->holds_around(block_, v));
   }
 
-  /// Of taking a vertex into another one: the longest edge that comes of it, squared, more where triangles are narrow.
+  /// Of taking a vertex into another one: the longest edge that comes of it, squared, more where triangles are narrow,
+  /// and where its place or its tip are far from them.
   double cost(uint32_t gone, uint32_t into) const {
     double longest_sq = 0, worst = 1;
+    double off_sq = distance_sq(mesh_.at(gone), mesh_.at(into)), tip_sq = distance_sq(known_.tip[gone], mesh_.at(into));
     for (const uint32_t t : mesh_.around(gone)) {
       const auto& c = mesh_.triangles()[t].corner;
       const size_t i = c[0] == gone ? 0 : c[1] == gone ? 1 : 2;
@@ -95,11 +101,14 @@ class Coarsening {
       const WorldPoint &p = mesh_.at(into), &q = mesh_.at(v), &r = mesh_.at(w);
       const double pq = distance_sq(p, q), pr = distance_sq(p, r), doubled = length(doubled_area(p, q, r));
       longest_sq = std::max({longest_sq, pq, pr});
+      off_sq = std::min(off_sq, nearest_of_triangle(mesh_.at(gone), p, q, r).distance_sq);
+      tip_sq = std::min(tip_sq, nearest_of_triangle(known_.tip[gone], p, q, r).distance_sq);
       const double narrow = pq + pr + distance_sq(q, r);
       worst = narrow < kMostNarrow * doubled ? std::max(worst, narrow / (kTwoRootThree * doubled)) : kMostNarrow;
     }
     const double aimed_at = mesh_.aimed_at(gone);
-    return (longest_sq * (1 + worst) / 2 + kErrorWeight * known_.quadric[gone].at(mesh_.at(into))) /
+    return (longest_sq * (1 + worst) / 2 + kErrorWeight * known_.quadric[gone].at(mesh_.at(into)) +
+            kTipWeight * std::max(off_sq, tip_sq)) /
            (aimed_at * aimed_at);
   }
 
@@ -123,16 +132,33 @@ class Coarsening {
     list_ways(v);
     if (ways_.empty()) return;
     if (ways_[0].first > expected) return push(v, ways_[0].first);
+    const WorldPoint gone = mesh_.at(v);
     const auto way = std::find_if(ways_.begin(), ways_.end(), [&](const auto& w) {
       return mesh_.collapse(v, w.second, scratch_, shapes_, short_square_);
     });
     if (way == ways_.end()) return;  // until something around it changes
     const uint32_t into = way->second;
     known_.quadric[into].add(known_.quadric[v]);
+    known_.tip[into] = farthest({known_.tip[into], known_.tip[v], gone}, into);
     mesh_.list_neighbours(into, around_);
     for (const uint32_t w : around_)
       if (!blocks_ || (is_here(w) && known_.least[w] == kNever)) add(w);  // in a block the others wait for their turn
     add(into);
+  }
+
+  /// Of some points the one that is farthest from the triangles around a vertex.
+  WorldPoint farthest(std::initializer_list<WorldPoint> points, uint32_t v) const {
+    WorldPoint out = mesh_.at(v);
+    double farthest_sq = 0;
+    for (const WorldPoint& p : points) {
+      double off_sq = distance_sq(p, mesh_.at(v));
+      for (const uint32_t t : mesh_.around(v)) {
+        const auto& c = mesh_.triangles()[t].corner;
+        off_sq = std::min(off_sq, nearest_of_triangle(p, mesh_.at(c[0]), mesh_.at(c[1]), mesh_.at(c[2])).distance_sq);
+      }
+      if (off_sq > farthest_sq) farthest_sq = off_sq, out = p;
+    }
+    return out;
   }
 
   WallMesh& mesh_;
@@ -148,7 +174,9 @@ class Coarsening {
 };
 
 Known known_of(const WallMesh& mesh) {
-  Known known{std::vector<Quadric>(mesh.vertices().size()), std::vector<double>(mesh.vertices().size(), kNever)};
+  const size_t count = mesh.vertices().size();
+  Known known{std::vector<Quadric>(count), {}, std::vector<double>(count, kNever)};
+  for (const RegionVertex& v : mesh.vertices()) known.tip.push_back(v.position);
   for (const RegionTriangle& t : mesh.triangles()) {
     if (t.is_gone()) continue;
     const WorldPoint &a = mesh.at(t.corner[0]), n = mesh.normal(t);

@@ -10,21 +10,17 @@
 
 namespace isoshell {
 
-PatchMesh coarsen_walls(const CutSurface& cut, const WallTriangles& walls, const JoinOptions& options,
-                        const Context& context) {
-  return run_with_threads(context, [&] {
-    WallMesh mesh(cut, walls);
-    coarsen(mesh, options.vertices, context);
-    even_out(mesh, options.vertices, context);
-    auto lookup = mesh.shared_lookup();
-    return PatchMesh(std::move(lookup), std::move(mesh), options);
+void coarsen_walls(WallMesh& mesh, int64_t vertices, const Context& context) {
+  run_with_threads(context, [&] {
+    coarsen(mesh, vertices, context);
+    even_out(mesh, vertices, context);
   });
 }
 
 JoinedPatches widened_to_count(PatchMesh mesh, const Context& context) {
   widen(mesh, context);
   const JoinOptions options = mesh.options();
-  if (options.is_steady || 10 * mesh.surplus() <= options.vertices) return mesh.joined();
+  if (options.is_steady || mesh.surplus() <= 0) return mesh.joined();
   const int64_t left_alone = mesh.left_alone();
   return run_with_threads(context, [&] {
     const auto lookup = mesh.shared_lookup();

@@ -230,11 +230,14 @@ double smallest_cell_vox(const PreparedSurface& p, Context& context) {
   return cell_of_length(p.sheet, p.target.vertices, context) * double(p.sheet.lengths.least) / kOneVoxelQ8;
 }
 
+double edge_of_length(const Sheet& sheet, int64_t vertices, Context& context) {
+  return cell_of_length(sheet, vertices, context) / kCellOfEdge;
+}
+
 void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report,
                    Context& context) {
   if (sheet.lengths.at.empty()) return;
-  const double edge_of_length = cell_of_length(sheet, seeds.size(), context) / kCellOfEdge;
-  measure_edges(sheet, sheet.frame.voxel_size, edge_of_length, seeds.home, mesh, report);
+  measure_edges(sheet, sheet.frame.voxel_size, edge_of_length(sheet, seeds.size(), context), seeds.home, mesh, report);
 }
 
 void measure_edges(const CutSurface& cut, const JoinedPatches& made, SizingReport& report) {

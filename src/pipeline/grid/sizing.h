@@ -39,6 +39,9 @@ std::vector<std::string> set_lengths(PreparedSurface& p, Context& context);
 /// Width of the cells where they are smallest, in voxels.
 double smallest_cell_vox(const PreparedSurface& p, Context& context);
 
+/// How long the edges of so many vertices are, over the lengths of the sheet, in lattice steps.
+double edge_of_length(const Sheet& sheet, int64_t vertices, Context& context);
+
 /// How well the edges of the result have the lengths of the surface at the homes of their ends. Those of a surface that
 /// is not asked for lengths have no report, though its creases may make them vary.
 void measure_edges(const Sheet& sheet, const SeedSet& seeds, const DualMesh& mesh, SizingReport& report,

@@ -5,16 +5,13 @@
 #include <utility>
 
 #include "core/watched.h"
-#include "features/walls/coarsen.h"
-#include "features/walls/coarsen_walls.h"
-#include "features/walls/even_out.h"
 #include "features/walls/fine_cells.h"
 #include "features/walls/mesh_faults.h"
 #include "isoshell/readable.h"
 #include "pipeline/defects/inverted_regions.h"
 #include "pipeline/grid/memory_estimate.h"
 #include "pipeline/grid/timed.h"
-#include "pipeline/patches/new_crossings.h"
+#include "pipeline/patches/simplify_patches.h"
 
 namespace isoshell {
 namespace {
@@ -26,15 +23,14 @@ bool memory_allows(const CutSurface& cut, const Context& context) {
 
 std::string words_of_coarse(int64_t cells, int64_t all, const std::string& why) {
   return "around " + std::to_string(cells) + " of " + counted(all, "vertex", "vertices") +
-         " edges were collapsed and flipped, not relaxed, and triangles are less even" +
+         " edges were collapsed, as relaxed cells make no mesh there, and triangles are less even" +
          (why.empty() ? "" : ": " + why);
 }
 
 /// Finds what keeps a mesh from being valid.
 class FaultFinder {
  public:
-  FaultFinder(const PreparedSurface& p, const CutSurface& cut, Context& context)
-      : cut_(cut), crossings_(p, cut, context) {}
+  FaultFinder(const CutSurface& cut, NewCrossings& crossings) : cut_(cut), crossings_(crossings) {}
 
   /// The seeds of vertices at which a mesh with fine cells has faults; ascending.
   std::vector<uint32_t> seeds_of(const FineCells::Mesh& made) {
@@ -57,13 +53,6 @@ class FaultFinder {
     std::sort(seeds.begin(), seeds.end());
     seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
     return seeds;
-  }
-
-  bool is_valid(const JoinedPatches& joined, OptimizeReport& report) {
-    const TrianglePairs pairs = crossings_.all(joined.mesh, {});
-    report.self_intersections = int64_t(pairs.size());
-    return crossings_.wrong_of(joined.mesh, pairs).empty() &&
-           (!cut_.regions || find_inverted_regions(cut_, joined.mesh, joined.features.patch).empty());
   }
 
  private:
@@ -95,17 +84,8 @@ class FaultFinder {
   }
 
   const CutSurface& cut_;
-  NewCrossings crossings_;
+  NewCrossings& crossings_;
 };
-
-JoinedPatches simplified(WallMesh mesh, const JoinOptions& options, const Context& context) {
-  auto lookup = mesh.shared_lookup();
-  run_with_threads(context, [&] {
-    coarsen(mesh, options.vertices, context);
-    even_out(mesh, options.vertices, context);
-  });
-  return widened_to_count(PatchMesh(std::move(lookup), std::move(mesh), options), context);
-}
 
 /// The mesh in which as many cells are fine as it takes.
 WallMesh with_fine_cells(FineCells& cells, FaultFinder& faults, Context& context) {
@@ -126,20 +106,21 @@ std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSur
   MendedPatches out;
   out.optimize = report.optimize;  // the first time; patches that are optimised again are added
   const MeshWithCells with_cells = mesh_with_cells(p, cut, found.optimized, in_patches, report, out.optimize, context);
-  return timed(report, "coarsen", context, [&]() -> std::optional<MendedPatches> {
-    const JoinOptions options = join_options(in_patches);
-    const SeededMesh& made = with_cells.made;
-    const PatchMesh relaxed = run_with_threads(context, [&] { return PatchMesh(cut, made, options); });
-    FineCells cells(cut, made, relaxed, with_cells.dual, with_cells.cell, with_cells.is_optimized);
-    std::vector<uint32_t> seeds;
-    for (const uint32_t v : with_cells.faults.vertices) seeds.push_back(cells.seed_of(v));
-    cells.add(seeds);
-    FaultFinder faults(p, cut, context);
-    out.joined = simplified(with_fine_cells(cells, faults, context), options, context);
-    if (!faults.is_valid(out.joined, out.optimize)) return {};
+  const SeededMesh& made = with_cells.made;
+  const PatchMesh relaxed = run_with_threads(context, [&] { return PatchMesh(cut, made, join_options(in_patches)); });
+  FineCells cells(cut, made, relaxed, with_cells.dual, with_cells.cell, with_cells.is_optimized);
+  std::vector<uint32_t> seeds;
+  for (const uint32_t v : with_cells.faults.vertices) seeds.push_back(cells.seed_of(v));
+  cells.add(seeds);
+  JoinedCheck check(p, cut, context);
+  FaultFinder faults(cut, check.crossings());
+  WallMesh mesh = timed(report, "coarsen", context, [&] { return with_fine_cells(cells, faults, context); });
+  auto joined = simplify_patches(std::move(mesh), in_patches, check, report, out.optimize, context);
+  if (!joined) return {};
+  out.joined = std::move(*joined);
+  if (cells.count() > 0)
     out.warning = words_of_coarse(cells.count(), int64_t(relaxed.vertices().size()), with_cells.faults.what);
-    return std::move(out);
-  });
+  return out;
 }
 
 JoinedPatches accepted(MendedPatches mended, RemeshReport& report) {

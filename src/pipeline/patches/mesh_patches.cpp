@@ -110,21 +110,22 @@ void replace_patches(const CutSurface& cut, const PerPatch& replaced, const Seed
   std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
 }
 
-/// Takes those of the chosen patches that have the same vertices as they were optimised. Result: the others of them.
+/// Takes those of the chosen patches that have the same vertices as they were optimised. Result: those that were not
+/// optimised at all.
 PerPatch take_optimized(const CutSurface& cut, const OptimizedPatches& from, const PerPatch& chosen, SeededMesh& made) {
   const Buckets<uint32_t> here = vertices_by_patch(cut, made.seeds.home.view()),
                           there = vertices_by_patch(cut, from.made.seeds.home.view()),
                           before = vertices_by_patch(cut, from.seeds.home.view());
-  PerPatch is_taken(chosen.size(), 0), others = chosen;
+  PerPatch is_taken(chosen.size(), 0), others(chosen.size(), 0);
   std::vector<uint32_t> number(size_t(from.made.seeds.size()), kNone);
   for (size_t patch = 0; patch < chosen.size(); ++patch) {
     const View<const uint32_t> to = here.in(int64_t(patch)), was = before.in(int64_t(patch)),
                                is = there.in(int64_t(patch));
     const auto is_same = [&](uint32_t u, uint32_t v) { return made.seeds.home[u] == from.seeds.home[v]; };
+    others[patch] = chosen[patch] && !from.is_optimized[patch];
     is_taken[patch] = chosen[patch] && from.is_optimized[patch] && is.size == to.size &&
                       std::equal(to.begin(), to.end(), was.begin(), was.end(), is_same);
     if (!is_taken[patch]) continue;
-    others[patch] = 0;
     for (int64_t i = 0; i < to.size; ++i) number[is[i]] = to[i];
   }
   replace_patches(cut, is_taken, from.made, number, made);

@@ -20,6 +20,7 @@
 #include "isoshell/error.h"
 #include "isoshell/mesh_topology.h"
 #include "isoshell/readable.h"
+#include "measure/crossing_corners.h"
 #include "pipeline/grid/attempt.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
@@ -275,9 +276,13 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetW
   }
   const CutSurface& cut = *made_here.cut;
   TriangleMesh& mesh = made_here.mesh;
-  if (const int64_t crossings = report.optimize.self_intersections; crossings > 0)
+  if (const int64_t crossings = report.optimize.self_intersections; crossings > 0) {
+    const PointQ8 at = crossing_corners(made_here.joined.mesh, {}).front();
+    report.intersection_at = p.surface.frame.to_world(at);
     report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
-                              " where the input's own triangles do");
+                              ", near " + readable_place(*report.intersection_at, p.surface.frame) +
+                              ", where the input's own triangles do");
+  }
   report.count.why = "its curves need them, or leave no room for more";
   warn_of_left_alone(made_here.joined.left_alone, report);
   if (cut.source->is_sheet) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/copy_product.h"
+#include "core/watched.h"
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/refine_mesh.h"
 #include "features/walls/coarsen_walls.h"
@@ -18,7 +19,7 @@
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/mend_patches.h"
 #include "pipeline/patches/mesh_patches.h"
-#include "pipeline/patches/new_crossings.h"
+#include "pipeline/patches/simplify_patches.h"
 #include "pipeline/regions/flat_walls.h"
 #include "pipeline/regions/region_walls.h"
 #include "pipeline/regions/restore_volumes.h"
@@ -28,7 +29,7 @@ namespace {
 
 constexpr int64_t kManyVertices = 2;  ///< of walls, for one that is asked for
 constexpr const char* kCoarsened =
-    "the edges between regions were collapsed and flipped, not relaxed, and triangles are less even: ";
+    "the edges between regions were collapsed, not relaxed, and triangles are less even: ";
 constexpr const char* kTooNear = "walls bend, and are nearer to one another than half an edge";
 
 /// Of a mesh whose vertices are no corners of voxels any more.
@@ -67,18 +68,19 @@ bool has_inverted(const CutSurface& cut, const JoinedPatches& joined) {
   return !find_inverted_regions(cut, joined.mesh, joined.features.patch).empty();
 }
 
-bool has_crossing(const PreparedSurface& p, const JoinedPatches& joined, Context& context) {
-  return !NewCrossings(p, *p.cut, context).all(joined.mesh, {}).empty();
-}
-
-/// None where walls intersect as they came in, or a region is too small for fewer vertices.
-std::optional<JoinedPatches> coarsened(const PreparedSurface& p, int64_t vertices, RemeshReport& report,
+/// None where triangles intersect, as walls did that came in, or a region is too small for fewer vertices.
+std::optional<JoinedPatches> coarsened(const PreparedSurface& p, const PatchOptions& in_patches, RemeshReport& report,
                                        Context& context) {
-  return timed(report, "coarsen", context, [&]() -> std::optional<JoinedPatches> {
-    JoinedPatches made = coarsen_walls(*p.cut, few_triangles_of(p, vertices), {vertices}, context).joined();
-    if (has_inverted(*p.cut, made) || has_crossing(p, made, context)) return {};
-    return made;
+  report.optimize = {};
+  JoinedCheck check(p, *p.cut, context);
+  WallMesh walls = timed(report, "coarsen", context, [&] {
+    return run_with_threads(context, [&] { return WallMesh(*p.cut, few_triangles_of(p, in_patches.seeds.count)); });
   });
+  std::optional<JoinedPatches> made =
+      simplify_patches(std::move(walls), in_patches, check, report, report.optimize, context);
+  if (made && report.optimize.self_intersections > 0) made.reset();
+  if (!made) report.optimize = {};
+  return made;
 }
 
 TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatches joined, RemeshReport& report,
@@ -127,8 +129,7 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
     return join_relaxed(p, made, in_patches, joined, report, context);
   });
   if (!why_not.empty()) {
-    report.optimize = {};
-    std::optional<JoinedPatches> coarse = coarsened(p, in_patches.seeds.count, report, context);
+    std::optional<JoinedPatches> coarse = coarsened(p, in_patches, report, context);
     report.warnings.push_back(std::string(coarse ? kCoarsened : "the walls of regions are as they came in: ") +
                               why_not);
     if (!coarse) {

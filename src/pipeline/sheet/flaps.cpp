@@ -8,7 +8,6 @@
 
 #include "core/copy_product.h"
 #include "core/voxel_set.h"
-#include "geometry/near_points.h"
 #include "isoshell/advanced/to_host.h"
 #include "pipeline/grid/thin_walls.h"
 #include "voxel/exact_int.h"
@@ -145,8 +144,8 @@ void keep_off_surface(const Sheet& laid, const std::vector<uint32_t>& now, Sheet
   }
 }
 
-}  // namespace
-
+/// The sheet of the solid together with all voxels within `grown_vox` of some sites. What is not within that of them
+/// stays as it was laid.
 void grow_at(PreparedSurface& p, const SiteSet& where, int32_t grown_vox, int64_t smallest_component_q16,
              Context& context) {
   const SiteSet solid = host_copy(solid_voxels_of(p));
@@ -165,21 +164,13 @@ void grow_at(PreparedSurface& p, const SiteSet& where, int32_t grown_vox, int64_
   p.sheet.topology.bridged_vertices = laid.topology.bridged_vertices;  // the proxy has no sources of its own
 }
 
+}  // namespace
+
 bool grow_flaps(PreparedSurface& p, int32_t grown_vox, int64_t smallest_component_q16, Context& context) {
   const SiteSet flaps = sites_of_flaps(*OnHost(p.sites), *OnHost(p.sheet));
   if (flaps.voxels.voxel_count() == 0) return false;
   grow_at(p, flaps, grown_vox, smallest_component_q16, context);
   return true;
-}
-
-SiteSet sites_near(const SiteSet& sites, const std::vector<PointQ8>& points, double reach_vox) {
-  const OnHost<SiteSet> here(sites);
-  const NearPoints near(points, reach_vox * kOneVoxelQ8);
-  LeafMasks leaves;
-  for_each_voxel(here->voxels.view(), [&](Voxel v, int64_t) {
-    if (near.holds({v.x * kOneVoxelQ8, v.y * kOneVoxelQ8, v.z * kOneVoxelQ8})) add(leaves, v);
-  });
-  return {voxel_set_of(leaves, here->voxels)};
 }
 
 }  // namespace isoshell

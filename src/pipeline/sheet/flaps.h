@@ -11,12 +11,4 @@ namespace isoshell {
 /// those at flaps. Returns whether there are any flaps.
 bool grow_flaps(PreparedSurface& prepared, int32_t grown_vox, int64_t smallest_component_q16, Context& context);
 
-/// Gives a prepared surface the sheet of its solid together with all voxels within `grown_vox` of some of its sites.
-/// What is not within that of them stays as it was laid.
-void grow_at(PreparedSurface& prepared, const SiteSet& where, int32_t grown_vox, int64_t smallest_component_q16,
-             Context& context);
-
-/// The sites within about this reach of points.
-SiteSet sites_near(const SiteSet& sites, const std::vector<PointQ8>& points, double reach_vox);
-
 }  // namespace isoshell

@@ -4,7 +4,6 @@
 #include "isoshell/advanced/stages.h"
 #include "stages/halfedge/collapse_cost.h"
 #include "stages/halfedge/half_edges.h"
-#include "stages/halfedge/intersections.h"
 #include "stages/labels/label_body.h"
 #include "stages/sheet/sheet_walk.h"
 
@@ -95,33 +94,6 @@ struct MoveToMiddle {
   }
 };
 
-/// The triangle that stays, by the vertices that stay.
-struct MergeTriangle {
-  View<const uint32_t> kept, merged_into;
-  View<const TriangleIndices> from;
-  View<TriangleIndices> to;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    const TriangleIndices t = from[kept[i]];
-    to[i] = {merged_into[t.a], merged_into[t.b], merged_into[t.c]};
-  }
-};
-/// Takes back what makes triangles intersect, and blocks it.
-struct PartCrossing {
-  View<const uint32_t> marked;
-  View<uint32_t> merged_into;
-  View<uint8_t> blocked;
-  ISOSHELL_HD void operator()(int64_t v) const {
-    const uint32_t into = merged_into[v];
-    if (into == v || !marked[into]) return;
-    blocked[v] = blocked[into] = 1;
-    merged_into[v] = uint32_t(v);
-  }
-};
-struct IsMerged {
-  View<const uint32_t> merged_into;
-  ISOSHELL_HD int64_t operator()(int64_t v) const { return merged_into[v] != v; }
-};
-
 struct NumberKept {
   View<const uint32_t> kept;
   View<uint32_t> new_id;
@@ -176,38 +148,9 @@ struct TakeFreeId {
   ISOSHELL_HD void operator()(int64_t i) const { by_id[free_id[i]] = first + uint32_t(i); }
 };
 
-/// Takes back, of the chosen edges, those that take part in intersections, until none does. Returns how many.
-template <class Exec>
-int64_t part_crossing(Exec& exec, const SurfaceMesh& surface, const WalkOntoSheet& walk, const SeedSet& seeds,
-                      const DualMesh& mesh, View<uint32_t> merged_into, View<uint8_t> blocked) {
-  const int64_t vertices = seeds.size(), chosen = exec.sum(vertices, IsMerged{merged_into});
-  const int64_t spacing_vox = seed_spacing(exec, surface, vertices).h_q8 / kOneVoxelQ8 + 1;
-  Buffer<PointQ8> position = exec.template make<PointQ8>(vertices);
-  Buffer<Normal8> normal = exec.template make<Normal8>(vertices);
-  Buffer<uint32_t> home = exec.template make<uint32_t>(vertices), marked = exec.template make<uint32_t>(vertices);
-  for (int64_t left = chosen, before = INT64_MAX; left > 0 && left < before;) {
-    before = left;
-    exec.copy(seeds.position.view(), position.view());
-    exec.copy(seeds.home.view(), home.view());
-    exec.for_each("move to the middle", vertices,
-                  MoveToMiddle{walk, seeds.fixed.count, merged_into, position.view(), normal.view(), home.view()});
-    const Buffer<uint32_t> kept =
-        exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
-    Buffer<TriangleIndices> triangles = exec.template make<TriangleIndices>(kept.size());
-    exec.for_each("merge triangles", kept.size(),
-                  MergeTriangle{kept.view(), merged_into, mesh.triangles.view(), triangles.view()});
-    optimize::find_intersections(exec, {triangles.view(), position.view(), seeds.fixed.joined.view()},
-                                 surface.extent_vox, spacing_vox, marked.view());
-    exec.for_each("part crossing", vertices, PartCrossing{marked.view(), merged_into, blocked});
-    left = exec.sum(vertices, IsMerged{merged_into});
-  }
-  return chosen - exec.sum(vertices, IsMerged{merged_into});
-}
-
 /// Numbers what stays anew: vertex i becomes what kept[i] was.
 template <class Exec>
-void renumber(Exec& exec, View<const uint32_t> kept, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh,
-              Buffer<uint8_t>& blocked) {
+void renumber(Exec& exec, View<const uint32_t> kept, View<const uint32_t> merged_into, SeedSet& seeds, DualMesh& mesh) {
   const Buffer<uint32_t> triangles =
       exec.select(mesh.triangles.size(), HasThreeLabels{mesh.triangles.view(), merged_into});
   Buffer<uint32_t> new_id = exec.template make<uint32_t>(merged_into.size);
@@ -227,10 +170,6 @@ void renumber(Exec& exec, View<const uint32_t> kept, View<const uint32_t> merged
       "copy kept triangles", triangles.size(),
       CopyKeptTriangle{triangles.view(), merged_into, new_id.view(), mesh.triangles.view(), out.triangles.view()});
   exec.sort(out.triangles.view(), ByIndices{});
-  Buffer<uint8_t> still_blocked = exec.template make<uint8_t>(kept.size);
-  exec.for_each("copy blocked", kept.size,
-                CopyKept<uint8_t>{kept, View<const uint8_t>(blocked.view()), still_blocked.view()});
-  blocked = std::move(still_blocked);
   seeds = std::move(left);
   mesh = std::move(out);
 }
@@ -256,8 +195,6 @@ void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const CollapseO
                          DualMesh& mesh) {
   using namespace collapse;
   const WalkOntoSheet walk = walk_onto(surface);
-  Buffer<uint8_t> blocked = exec.template make<uint8_t>(seeds.size());  // vertices of edges that were taken back
-  exec.fill(blocked.view(), uint8_t(0));
   Buffer<uint32_t> fixed_valence;  // of the mesh as it comes in, see optimize::FixedView
   Buffer<uint32_t> was = exec.template make<uint32_t>(options.keep_ids ? seeds.size() : 0);  // their ids, ascending
   exec.for_each("number vertices", was.size(), StartApart{was.view()});
@@ -281,30 +218,27 @@ void collapse_edges_body(Exec& exec, const SurfaceMesh& surface, const CollapseO
     exec.sort(candidates.view(), CheapestFirst{});
     Buffer<uint8_t> taken = exec.template make<uint8_t>(before);
     Buffer<uint32_t> merged_into = exec.template make<uint32_t>(before);
-    exec.copy(View<const uint8_t>(blocked.view()), taken.view());
+    exec.fill(taken.view(), uint8_t(0));
     exec.for_each("start apart", before, StartApart{merged_into.view()});
     exec.for_each("choose edges", 1,
                   ChooseEdges{cost.mesh, candidates.view(), before - options.target, taken.view(), merged_into.view()});
-    int64_t taken_back = 0;
-    if (options.keep_apart)
-      taken_back = part_crossing(exec, surface, walk, seeds, mesh, merged_into.view(), blocked.view());
     exec.for_each("move to the middle", before,
                   MoveToMiddle{walk, seeds.fixed.count, merged_into.view(), seeds.position.view(), seeds.normal.view(),
                                seeds.home.view()});
     const Buffer<uint32_t> kept = exec.select(before, StaysVertex{merged_into.view()});
-    renumber(exec, kept.view(), merged_into.view(), seeds, mesh, blocked);
+    renumber(exec, kept.view(), merged_into.view(), seeds, mesh);
     if (options.keep_ids) {
       Buffer<uint32_t> still = exec.template make<uint32_t>(kept.size());
       exec.for_each("copy ids", kept.size(), CopyKept<uint32_t>{kept.view(), was.view(), still.view()});
       was = std::move(still);
     }
-    any = seeds.size() < before || taken_back > 0;
+    any = seeds.size() < before;
   }
   if (!options.keep_ids) return;
   const Buffer<uint32_t> by_id = vertices_by_kept_ids(exec, was.view());
   Buffer<uint32_t> alone = exec.template make<uint32_t>(seeds.size());
   exec.for_each("start apart", alone.size(), StartApart{alone.view()});
-  renumber(exec, by_id.view(), alone.view(), seeds, mesh, blocked);
+  renumber(exec, by_id.view(), alone.view(), seeds, mesh);
 }
 
 }  // namespace isoshell

@@ -17,7 +17,6 @@
 #include "stages/dual/dual_faces_body.h"
 #include "stages/dual/dual_pieces_body.h"
 #include "stages/dual/dual_split_body.h"
-#include "stages/halfedge/intersections.h"
 #include "stages/labels/label_body.h"
 
 namespace isoshell {
@@ -44,7 +43,6 @@ class Partition {
         report_(report),
         rounds_left_(options.max_repair_rounds),
         first_count_(seeds.size()),
-        most_against_crossing_(options.most_against_crossing),
         spacing_(seed_spacing(exec, surface, seeds.size())),
         label_(exec.template make<uint32_t>(surface.vertex_count())) {
     report_ = {};
@@ -64,7 +62,6 @@ class Partition {
       Buffer<uint32_t> failing = find_failing(faces);
       const Buffer<uint32_t> unused = unused_seeds();
       report_.failed_cells = disconnected_pieces + failing.size() + unused.size() + stuck();
-      if (report_.failed_cells == 0 && split_crossing(faces)) continue;
       if (failing.empty() && !unused.empty()) failing = largest_cells(unused.size());
       if (failing.empty() || disconnected_pieces > 0 || !take_round()) break;
       split(failing, unused);
@@ -174,28 +171,7 @@ class Partition {
   int64_t stuck() { return seeds_.fixed.count > 0 ? exec_.value(View<const uint32_t>(stuck_.view()), 0) : 0; }
   Buffer<uint32_t> requested() { return exec_.select(cells_.count(), IsRequested{request_.view()}); }
 
-  /// Splits the cells of triangles that intersect. False when there are none, or not enough seeds for them.
-  bool split_crossing(const Buffer<TriangleIndices>& faces) {
-    if (most_against_crossing_ == 0) return false;
-    Buffer<uint32_t> marked = exec_.template make<uint32_t>(seeds_.size());
-    const int64_t pairs =
-        optimize::find_intersections(exec_, {faces.view(), seeds_.position.view(), seeds_.fixed.joined.view()},
-                                     surface_.extent_vox, spacing_.h_q8 / kOneVoxelQ8 + 1, marked.view());
-    if (pairs == 0) return false;
-    exec_.for_each("request crossing cells", cells_.count(),
-                   RequestCrossing{marked.view(), cells_.view(), request_.view()});
-    const Buffer<uint32_t> crossing = requested();
-    Buffer<int64_t> moved = exec_.template make<int64_t>(cells_.count());
-    exec_.for_each("settle crossing cells", cells_.count(),
-                   MoveToOnlyVertex{marked.view(), cells_.view(), writer_of(surface_, seeds_), moved.view()});
-    const int64_t moved_seeds = exec_.sum(cells_.count(), MovedSeeds{moved.view()});
-    if (crossing.size() + moved_seeds == 0 || crossing.size() > most_against_crossing_ || !take_round()) return false;
-    most_against_crossing_ -= crossing.size();
-    if (!crossing.empty()) split(crossing, {}, true);
-    return true;
-  }
-
-  void split(const Buffer<uint32_t>& cell, const Buffer<uint32_t>& unused, bool to_middles = false) {
+  void split(const Buffer<uint32_t>& cell, const Buffer<uint32_t>& unused) {
     const int64_t count = cell.size();
     Buffer<int64_t> first = exec_.template make<int64_t>(count + 1);
     Buffer<uint32_t> queue = exec_.template make<uint32_t>(
@@ -212,10 +188,6 @@ class Partition {
                                              cells_.view(), queue.view(), mark_.view(), half.view()},
                                    ApplySplit{ids.view(), queue.view(), first.view(), half.view(), mark_.view(),
                                               label_.view(), cells_.view(), writer_of(surface_, seeds_)});
-    if (to_middles)
-      exec_.for_each("seeds to middles", count,
-                     SeedsToMiddles{cell.view(), ids.view(), queue.view(), first.view(), label_.view(),
-                                    surface_.position.view(), cells_.view(), writer_of(surface_, seeds_)});
     if (!face_triangle_.empty())
       add_new_faces(exec_, {graph_of(surface_), label_.view(), queue.view(), request_.view(), {}}, ids.view(),
                     cell.view(), cells_.count(), face_triangle_);
@@ -227,7 +199,6 @@ class Partition {
   DualReport& report_;
   int64_t rounds_left_;
   int64_t first_count_;
-  int64_t most_against_crossing_;
   SeedSpacing spacing_;
   Buffer<uint32_t> label_;
   Cells cells_;

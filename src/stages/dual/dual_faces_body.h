@@ -100,33 +100,6 @@ struct RequestDoublePairs {
   }
 };
 
-/// A cell whose triangles intersect others is split anywhere.
-struct RequestCrossing {
-  View<const uint32_t> marked;
-  CellsView cells;
-  View<uint32_t> request;
-  ISOSHELL_HD void operator()(int64_t s) const {
-    request[s] = marked[s] && cells.loose(s) > 0 ? kSplitAnywhere : kNoSplit;
-  }
-};
-
-/// A free cell of one vertex cannot be split: its seed goes there. Counts the seeds that moved.
-struct MoveToOnlyVertex {
-  View<const uint32_t> marked;
-  CellsView cells;
-  SeedWriter seeds;
-  View<int64_t> moved;
-  ISOSHELL_HD void operator()(int64_t s) const {
-    moved[s] = marked[s] && cells.size[s] == 1 && !cells.is_fixed(s) &&
-               !(seeds.position[s] == seeds.vertex_position[cells.root[s]]);
-    if (moved[s]) seeds.put(uint32_t(s), cells.root[s]);
-  }
-};
-struct MovedSeeds {
-  View<const int64_t> moved;
-  ISOSHELL_HD int64_t operator()(int64_t s) const { return moved[s]; }
-};
-
 /// On the graph of the cells: components as sets, their number of cells and their largest cell.
 struct HookPairs {
   View<const uint64_t> pair;

@@ -187,44 +187,6 @@ struct ApplySplit {
   }
 };
 
-/// Both seeds of a split cell, but for a fixed one, go to the vertices of their halves that are nearest to the halves'
-/// middles, ties to the smaller vertex.
-struct SeedsToMiddles {
-  View<const uint32_t> cell, new_id, queue;
-  View<const int64_t> first;
-  View<const uint32_t> label;
-  View<const PointQ8> position;
-  CellsView cells;
-  SeedWriter seeds;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    for (const uint32_t id : {cell[i], new_id[i]})
-      if (!cells.is_fixed(id)) seeds.put(id, vertex_in_the_middle(i, id));
-  }
-
- private:
-  ISOSHELL_HD uint32_t vertex_in_the_middle(int64_t i, uint32_t id) const {
-    Vec64 sum = {0, 0, 0};
-    int64_t count = 0;
-    for (int64_t at = first[i]; at < first[i + 1]; ++at) {
-      if (label[queue[at]] != id) continue;
-      const PointQ8 p = position[queue[at]];
-      sum = sum + Vec64{p.x, p.y, p.z};
-      ++count;
-    }
-    const PointQ8 middle = {int32_t(round_div(sum.x, count)), int32_t(round_div(sum.y, count)),
-                            int32_t(round_div(sum.z, count))};
-    uint32_t best = kNone;
-    int64_t nearest = INT64_MAX;
-    for (int64_t at = first[i]; at < first[i + 1]; ++at) {
-      const uint32_t v = queue[at];
-      if (label[v] != id) continue;
-      const int64_t d = distance_sq_q16(position[v], middle);
-      if (d < nearest || (d == nearest && v < best)) nearest = d, best = v;
-    }
-    return best;
-  }
-};
-
 /// Sheet triangles that splits made to faces, found at the vertices of the cells that were split. Three labels stay
 /// three, so no triangle ceases to be a face.
 struct NewFaces {

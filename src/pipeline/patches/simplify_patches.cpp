@@ -1,0 +1,75 @@
+// See simplify_patches.h.
+#include "pipeline/patches/simplify_patches.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "features/cutting/cut_piece.h"
+#include "features/walls/coarsen_walls.h"
+#include "features/walls/open_mesh.h"
+#include "pipeline/defects/inverted_regions.h"
+#include "pipeline/defects/patch_defects.h"
+#include "pipeline/grid/attempt.h"
+#include "pipeline/grid/timed.h"
+
+namespace isoshell {
+namespace {
+
+struct Optimized {
+  EditableMesh mesh;
+  OptimizeReport report;
+};
+
+/// From where no triangles intersect: what would make some stays as it was. None of patches that are no manifold, or
+/// that a stage has no room for.
+std::optional<Optimized> optimized(const WallMesh& mesh, const OptimizeOptions& options, RemeshReport& report,
+                                   Context& context) {
+  OpenMesh open(mesh, mesh.lookup());
+  SeededMesh made = open.take();
+  if (!find_patch_defects(made).empty()) return {};
+  OptimizeOptions careful = options;
+  careful.keep_apart = true;
+  OptimizedMesh out;
+  const std::string why_not = failure_reason([&]() -> std::string {
+    out = timed(report, "post", context,
+                [&] { return optimize_mesh(mesh.lookup().cut().surface, std::move(made), careful, context); });
+    return "";
+  });
+  if (!why_not.empty()) return {};
+  bring_to_host(out);
+  return Optimized{open.joined_again(out), out.report};
+}
+
+}  // namespace
+
+bool JoinedCheck::is_valid(const JoinedPatches& joined, OptimizeReport& report) {
+  const TrianglePairs pairs = crossings_.all(joined.mesh, {});
+  report.self_intersections = int64_t(pairs.size());
+  return crossings_.wrong_of(joined.mesh, pairs).empty() &&
+         (!cut_.regions || find_inverted_regions(cut_, joined.mesh, joined.features.patch).empty());
+}
+
+std::optional<JoinedPatches> simplify_patches(WallMesh mesh, const PatchOptions& options, JoinedCheck& check,
+                                              RemeshReport& report, OptimizeReport& sum, Context& context) {
+  const JoinOptions join = join_options(options);
+  const std::shared_ptr<const CutLookup> lookup = mesh.shared_lookup();
+  const auto widened = [&](EditableMesh from) {
+    return timed(report, "angles", context,
+                 [&] { return widened_to_count(PatchMesh(lookup, std::move(from), join), context); });
+  };
+  timed(report, "coarsen", context, [&] { coarsen_walls(mesh, join.vertices, context); });
+  if (std::optional<Optimized> better = optimized(mesh, options.optimize, report, context)) {
+    JoinedPatches joined = widened(std::move(better->mesh));
+    if (check.is_valid(joined, sum)) {
+      sum.flips += better->report.flips;
+      sum.undone_vertices += better->report.undone_vertices;
+      return joined;
+    }
+  }
+  JoinedPatches joined = widened(std::move(mesh));
+  if (!check.is_valid(joined, sum)) return {};
+  return joined;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,34 @@
+// A valid mesh of a cut surface with as many vertices as asked for.
+#pragma once
+
+#include <optional>
+
+#include "features/walls/wall_mesh.h"
+#include "pipeline/patches/new_crossings.h"
+#include "pipeline/patches/patches.h"
+
+namespace isoshell {
+
+/// Tells whether a mesh of a cut surface may be a result.
+class JoinedCheck {
+ public:
+  JoinedCheck(const PreparedSurface& p, const CutSurface& cut, Context& context)
+      : cut_(cut), crossings_(p, cut, context) {}
+
+  /// Triangles intersect where those of the input do, if anywhere, and no region is inside out.
+  bool is_valid(const JoinedPatches& joined, OptimizeReport& report);
+
+  NewCrossings& crossings() { return crossings_; }
+
+ private:
+  const CutSurface& cut_;
+  NewCrossings crossings_;
+};
+
+/// From a valid mesh: edges are collapsed, what is not settled is evened out, vertices off curves are optimised from
+/// there, and angles beside curves widened. None where that is not valid. `report`: of times alone. `sum`: what the
+/// optimisation did is added where the result is of it. Cost: as coarsen, even_out, optimize_mesh and widen.
+std::optional<JoinedPatches> simplify_patches(WallMesh mesh, const PatchOptions& options, JoinedCheck& check,
+                                              RemeshReport& report, OptimizeReport& sum, Context& context);
+
+}  // namespace isoshell
