@@ -110,22 +110,21 @@ void replace_patches(const CutSurface& cut, const PerPatch& replaced, const Seed
   std::copy(triangles.begin(), triangles.end(), made.mesh.triangles.begin());
 }
 
-/// Takes those of the chosen patches that have the same vertices as they were optimised. Result: those that were not
-/// optimised at all.
+/// Takes those of the chosen patches that have the same vertices as they were optimised. Result: the others of them.
 PerPatch take_optimized(const CutSurface& cut, const OptimizedPatches& from, const PerPatch& chosen, SeededMesh& made) {
   const Buckets<uint32_t> here = vertices_by_patch(cut, made.seeds.home.view()),
                           there = vertices_by_patch(cut, from.made.seeds.home.view()),
                           before = vertices_by_patch(cut, from.seeds.home.view());
-  PerPatch is_taken(chosen.size(), 0), others(chosen.size(), 0);
+  PerPatch is_taken(chosen.size(), 0), others = chosen;
   std::vector<uint32_t> number(size_t(from.made.seeds.size()), kNone);
   for (size_t patch = 0; patch < chosen.size(); ++patch) {
     const View<const uint32_t> to = here.in(int64_t(patch)), was = before.in(int64_t(patch)),
                                is = there.in(int64_t(patch));
     const auto is_same = [&](uint32_t u, uint32_t v) { return made.seeds.home[u] == from.seeds.home[v]; };
-    others[patch] = chosen[patch] && !from.is_optimized[patch];
     is_taken[patch] = chosen[patch] && from.is_optimized[patch] && is.size == to.size &&
                       std::equal(to.begin(), to.end(), was.begin(), was.end(), is_same);
     if (!is_taken[patch]) continue;
+    others[patch] = 0;
     for (int64_t i = 0; i < to.size; ++i) number[is[i]] = to[i];
   }
   replace_patches(cut, is_taken, from.made, number, made);
@@ -234,7 +233,9 @@ MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, c
   out.is_optimized = patches_to_optimize(cut, out.made, are_disks);
   bring_to_host(out.made);
   const PerPatch others = take_optimized(cut, optimized, out.is_optimized, out.made);
-  optimize_in_place(cut, others, out.made, options, report, sum, context);
+  // Walls have no tips, which simplified cells would not get vertices for; without it fewer cells of theirs have
+  // faults.
+  if (!cut.regions) optimize_in_place(cut, others, out.made, options, report, sum, context);
   bring_to_host(out.made);
   out.faults = find_faults(p, cut, out.made, sum, context);
   const PerPatch is_flat = triangulate_flat_patches(cut, out.faults, out.made);

@@ -38,8 +38,8 @@ PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, Seeded
                          RemeshReport& report, Context& context);
 
 /// The mesh of the seeds that were optimised, with their cells and with all vertices that the dual's repair puts in.
-/// Patches in which it puts in none are taken as they were optimised; those that were not are now. `report`: of times
-/// alone. In host memory.
+/// Patches in which it puts in none are taken as they were optimised, and others are optimised but for walls of
+/// regions. `report`: of times alone. In host memory.
 MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const OptimizedPatches& optimized,
                               const PatchOptions& options, RemeshReport& report, OptimizeReport& sum, Context& context);
 
