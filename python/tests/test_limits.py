@@ -240,7 +240,8 @@ def test_intersections_of_the_input(run, tmp_path, claim):
     usual = ("--vertices", 500, "--boundary", "keep")
     done = run(source, *usual)
     assert done.status == 6 and done.stats["topology"]["self_intersections"] > 0
-    assert "where the input's own triangles do" in done.said
+    assert "pairs of triangles intersect, near " in done.said
+    assert ", where the input's own triangles do" in done.said
     assert run(source, *usual, "--allow-intersections").status == 0
 
 

@@ -6,8 +6,10 @@
 #include "core/copy_product.h"
 #include "features/walls/fine_cells.h"
 #include "features/walls/mesh_faults.h"
+#include "features/walls/open_mesh.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/mesh_census.h"
+#include "pipeline/defects/patch_defects.h"
 #include "pipeline/patches/mend_patches.h"
 #include "pipeline/patches/mesh_patches.h"
 #include "pipeline/regions/region_walls.h"
@@ -105,6 +107,31 @@ TEST_CASE("regions are closed where some cells are fine and others relaxed, whic
     CHECK(fault.empty());
     for (uint32_t v = 0; v < made.seed.size(); ++v)
       if (made.seed[v] != kNone) CHECK(made.mesh.at(v) == relaxed.mesh->at(made.seed[v]));
+  }
+}
+
+TEST_CASE("patches that are joined, cut open along their curves and joined again are the same mesh") {
+  TestContext context;
+  for (const LabelVolume& volume : {voronoi_grains(32, 12), random_labels(38), random_labels(44)}) {
+    const RelaxedWalls relaxed(volume, 1500, context);
+    FineCells cells = relaxed.cells();
+    cells.add(every(60, relaxed.mesh->vertices().size()));
+    const FineCells::Mesh made = cells.mesh();
+    if (!find_mesh_faults(made.mesh).empty()) continue;
+    OpenMesh open(made.mesh, made.mesh.lookup());
+    const SeededMesh opened = open.take();
+    CHECK(opened.seeds.fixed.count > 0);
+    CHECK(find_patch_defects(opened).empty());
+    const EditableMesh again = open.joined_again(opened);
+    CHECK(corners_of(again) == corners_of(made.mesh));
+    CHECK(again.vertex_count() == made.mesh.vertex_count());
+    const auto edges_on_curves = [](const EditableMesh& mesh) {
+      int64_t count = 0;
+      for (const RegionTriangle& t : mesh.triangles())
+        for (const uint32_t curve : t.curve) count += !t.is_gone() && curve != kNone;
+      return count;
+    };
+    CHECK(edges_on_curves(again) == edges_on_curves(made.mesh));
   }
 }
 

@@ -49,7 +49,7 @@ struct Quadric {
 /// What is known of the vertices.
 struct Known {
   std::vector<Quadric> quadric;  ///< of the triangles that were around each and what it took in
-  std::vector<WorldPoint> tip;   ///< of its own place and those that each took in the farthest from its triangles
+  std::vector<WorldPoint> tip;   ///< the point farthest from its triangles, of its place and those it took in
   std::vector<double> least;     ///< cost with which each is in a queue; kNever: in none
 };
 

@@ -6,6 +6,7 @@
 
 #include "features/angles/cut_lookup.h"
 #include "features/mesh/editable_mesh.h"
+#include "features/walls/curve_edges.h"
 #include "isoshell/advanced/stages.h"
 
 namespace isoshell {
@@ -13,7 +14,7 @@ namespace isoshell {
 /// Every vertex off the free ones has a copy for each fan of triangles between curves there. In host memory.
 class OpenMesh {
  public:
-  /// `joined` must outlive it. Cost: O(triangles).
+  /// `joined` must outlive it. Cost: sorts of its edges and vertices.
   OpenMesh(const EditableMesh& joined, const CutLookup& lookup);
 
   /// Vertices without triangles are left out. The copies are fixed seeds; which cells they have is left open.
@@ -22,7 +23,10 @@ class OpenMesh {
   EditableMesh joined_again(const SeededMesh& optimized) const;
 
  private:
+  void place_vertices(const CutLookup& lookup);
+
   const EditableMesh& joined_;
+  CurveEdges curves_;
   std::vector<uint32_t> of_joined_, patch_;  ///< per vertex its own in the joined mesh, and its patch
   SeededMesh made_;
 };

@@ -23,7 +23,7 @@ struct Optimized {
 
 /// From where no triangles intersect: what would make some stays as it was. None of patches that are no manifold, or
 /// that a stage has no room for.
-std::optional<Optimized> optimized(const WallMesh& mesh, const OptimizeOptions& options, RemeshReport& report,
+std::optional<Optimized> optimized(const PatchMesh& mesh, const OptimizeOptions& options, RemeshReport& report,
                                    Context& context) {
   OpenMesh open(mesh, mesh.lookup());
   SeededMesh made = open.take();
@@ -54,21 +54,18 @@ std::optional<JoinedPatches> simplify_patches(WallMesh mesh, const PatchOptions&
                                               RemeshReport& report, OptimizeReport& sum, Context& context) {
   const JoinOptions join = join_options(options);
   const std::shared_ptr<const CutLookup> lookup = mesh.shared_lookup();
-  const auto widened = [&](EditableMesh from) {
-    return timed(report, "angles", context,
-                 [&] { return widened_to_count(PatchMesh(lookup, std::move(from), join), context); });
-  };
   timed(report, "coarsen", context, [&] { coarsen_walls(mesh, join.vertices, context); });
-  if (std::optional<Optimized> better = optimized(mesh, options.optimize, report, context)) {
-    JoinedPatches joined = widened(std::move(better->mesh));
-    if (check.is_valid(joined, sum)) {
-      sum.flips += better->report.flips;
-      sum.undone_vertices += better->report.undone_vertices;
-      return joined;
+  PatchMesh made(lookup, std::move(mesh), join);
+  OptimizeReport done;
+  if (check.is_valid(made.joined(), done))  // otherwise triangles intersect before anything is optimised
+    if (std::optional<Optimized> better = optimized(made, options.optimize, report, context)) {
+      made = PatchMesh(lookup, std::move(better->mesh), join);
+      done = better->report;
     }
-  }
-  JoinedPatches joined = widened(std::move(mesh));
+  JoinedPatches joined = timed(report, "angles", context, [&] { return widened_to_count(std::move(made), context); });
   if (!check.is_valid(joined, sum)) return {};
+  sum.flips += done.flips;
+  sum.undone_vertices += done.undone_vertices;
   return joined;
 }
 

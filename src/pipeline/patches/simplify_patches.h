@@ -25,9 +25,9 @@ class JoinedCheck {
   NewCrossings crossings_;
 };
 
-/// From a valid mesh: edges are collapsed, what is not settled is evened out, vertices off curves are optimised from
-/// there, and angles beside curves widened. None where that is not valid. `report`: of times alone. `sum`: what the
-/// optimisation did is added where the result is of it. Cost: as coarsen, even_out, optimize_mesh and widen.
+/// Edges are collapsed, what is not settled is evened out, vertices off curves are optimised where no triangles
+/// intersect then, and angles beside curves are widened. None where that is not valid. `report`: of times alone. `sum`:
+/// what the optimisation did is added. Cost: as coarsen, even_out, optimize_mesh and widen.
 std::optional<JoinedPatches> simplify_patches(WallMesh mesh, const PatchOptions& options, JoinedCheck& check,
                                               RemeshReport& report, OptimizeReport& sum, Context& context);
 
