@@ -245,6 +245,27 @@ TEST_CASE("features: a part that touches itself in a plane keeps its creases, an
   CHECK(result.report.optimize.self_intersections == 0);
 }
 
+TEST_CASE("features: bars whose faces nearly lie in one plane keep creases on their own triangles", "[features]") {
+  TriangleSoup star;
+  const int bars = 28;
+  for (int i = 0; i < bars; ++i) {
+    const double turn = std::acos(-1.) * i / bars, tilt = .007 * i;
+    TriangleSoup bar = shapes::box({-1, -.1, -.1}, {1, .1, .1});
+    for (WorldPoint& p : bar.vertices) {
+      const double y = p.y * std::cos(tilt) - p.z * std::sin(tilt);
+      p = {p.x * std::cos(turn) - y * std::sin(turn), p.x * std::sin(turn) + y * std::cos(turn),
+           p.y * std::sin(tilt) + p.z * std::cos(tilt)};
+    }
+    star = i == 0 ? bar : shapes::together(std::move(star), bar);
+  }
+  TestContext context;
+  const RemeshResult result = remesh(star, keeping_creases(1000), context);
+  CHECK(result.report.features.on_sheet.empty());
+  CHECK(result.report.features.kept);
+  CHECK(result.report.optimize.self_intersections == 0);
+  CHECK(check_mesh(result.mesh).is_closed_manifold());
+}
+
 TEST_CASE("features: few vertices on a fine grid are no error", "[features]") {
   TestContext context;
   RemeshOptions options = keeping_creases(60);

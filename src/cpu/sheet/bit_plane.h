@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+
+#include "core/zeroed_memory.h"
 
 namespace isoshell {
 
@@ -26,10 +27,15 @@ class BitPlane {
     words[0] |= bits << (i & 63);
     words[1] |= bits >> 1 >> (63 - (i & 63));
   }
-  const std::vector<uint64_t>& words() const { return words_; }
+  /// Becomes a plane of as many bits; only what differs is written to.
+  void become(const BitPlane& other) {
+    for (size_t w = 0; w < words_.size(); ++w)
+      if (words_[w] != other.words_[w]) words_[w] = other.words_[w];
+  }
+  const ZeroedVector<uint64_t>& words() const { return words_; }
 
  private:
-  std::vector<uint64_t> words_;
+  ZeroedVector<uint64_t> words_;
 };
 
 }  // namespace isoshell

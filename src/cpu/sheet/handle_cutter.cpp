@@ -53,8 +53,8 @@ VoxelContacts contacts_of(uint32_t solid) {
 HandleCutter::HandleCutter(const int32_t extent_vox[3])
     : extent_{extent_vox[0], extent_vox[1], extent_vox[2]},
       solid_(extent_[0] * extent_[1] * extent_[2]),
-      grown_(solid_),
-      left_(solid_),
+      grown_(extent_[0] * extent_[1] * extent_[2]),
+      left_(extent_[0] * extent_[1] * extent_[2]),
       rank_(size_t(extent_[0] * extent_[1] * extent_[2])),
       waiting_(kRanks),
       known_(size_t(1) << kKnownBits) {
@@ -194,11 +194,11 @@ void HandleCutter::close_cuts_below(int rank) {
 }
 
 void HandleCutter::grow(int64_t handles, const std::function<void()>& check) {
-  left_ = solid_;
+  left_.become(solid_);
   std::vector<int64_t> starts;
   for (size_t w = 0; w < left_.words().size(); ++w)
     while (left_.words()[w]) starts.push_back(visit_component(int64_t(w) * 64 + __builtin_ctzll(left_.words()[w])));
-  left_ = solid_;
+  left_.become(solid_);
   for (const int64_t start : starts) grow_from(start, check);
   if (handles <= 0) return;
   std::vector<Cut> found = list_cuts();

@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/zeroed_memory.h"
 #include "cpu/sheet/bit_plane.h"
 #include "isoshell/advanced/lattice.h"
 
@@ -92,7 +93,7 @@ class HandleCutter {
   int64_t row_[9];  ///< steps to the rows around
   BitPlane solid_, grown_;
   BitPlane left_;  ///< solid voxels that are neither grown nor waiting; in between, those that are left to be looked at
-  std::vector<uint8_t> rank_;
+  ZeroedVector<uint8_t> rank_;
   std::vector<Queue> waiting_;   ///< per rank
   std::vector<uint32_t> known_;  ///< neighbourhoods met lately, times two, plus one where the voxel is simple
   int lowest_waiting_ = 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <unordered_set>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
@@ -29,8 +30,7 @@ constexpr double kRoundedAway = 1e-9;            // sums of two angles of 180 de
 constexpr double kParallel = .999;               // cosine between normals in one plane
 constexpr size_t kMostAround = 1024;             // triangles around a vertex that is changed
 constexpr size_t kTrianglesBetweenLooks = 4096;  // whether the run goes on
-constexpr size_t kMostChanges = 64;  // a thin triangle, far more than it takes; rounding may not make it endless
-constexpr double kMostCells = 8;     // that a triangle's box meets, in the mean
+constexpr double kMostCells = 8;                 // that a triangle's box meets, in the mean
 
 bool is_long(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c, double high) {
   const double longest_sq = std::max({distance_sq(a, b), distance_sq(b, c), distance_sq(c, a)});
@@ -96,14 +96,14 @@ class Slivers : private EditableMesh {
   bool remove(std::vector<uint32_t> found, const Context& context) {
     waiting_ = with_planes_of(std::move(found));
     std::reverse(waiting_.begin(), waiting_.end());
-    size_t changes = 0, looks = 0;
-    for (const size_t most = kMostChanges * waiting_.size(); !waiting_.empty() && changes < most;) {
+    bool has_changed = false;
+    for (size_t looks = 1; !waiting_.empty(); ++looks) {
       const uint32_t t = waiting_.back();
       waiting_.pop_back();
-      if (++looks % kTrianglesBetweenLooks == 0) check_cancel(context, "features");
-      if (!triangles()[t].is_gone() && change(t)) ++changes;
+      if (looks % kTrianglesBetweenLooks == 0) check_cancel(context, "features");
+      if (!triangles()[t].is_gone() && change(t)) has_changed = true;
     }
-    return changes > 0;
+    return has_changed;
   }
 
   /// Writes what is left into the mesh that it was made from.
@@ -283,8 +283,9 @@ class Slivers : private EditableMesh {
   }
 
   bool flip(const Flap& f, bool is_longest) {
-    if (!may_change_around(f.c) || !may_change_around(f.d)) return false;
+    if (!may_change_around(f.c) || !may_change_around(f.d) || was_flipped_.count(edge_key(f.c, f.d)) > 0) return false;
     if (!EditableMesh::flip(f.triangle, f.edge, change_, [&] { return should_flip(f, is_longest); })) return false;
+    was_flipped_.insert(edge_key(f.a, f.b));
     for (const uint32_t t : {f.triangle, f.other})
       for (size_t i = 0; i < 3; ++i)
         if (const std::optional<Flap> beside = flap(t, i);
@@ -320,6 +321,8 @@ class Slivers : private EditableMesh {
   double least_, strip_;
   std::vector<double> reach_;      ///< per vertex how far what was taken into it was away, at most
   std::vector<uint32_t> waiting_;  ///< triangles
+  /// Edges do not come back: where surfaces are bent, what is better differs from triangle to triangle, without an end.
+  std::unordered_set<uint64_t> was_flipped_;
   MeshChange change_;
 };
 

@@ -69,7 +69,7 @@ class Union {
         options_(options),
         report_(report),
         context_(context),
-        box_(box_of(soup.vertices, soup.triangles)),
+        box_(options.lattice_box ? *options.lattice_box : box_of(soup.vertices, soup.triangles)),
         given_(weld_vertices(soup.vertices, soup.triangles).position),
         parts_(find_solid_parts(soup, context)),
         part_of_(soup.triangles.size(), 0),
