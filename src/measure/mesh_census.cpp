@@ -140,9 +140,13 @@ MeshCensus take_census(const TriangleMesh& mesh, Context& context, int64_t dropp
     check_cancel(context, "census");
     const std::vector<uint32_t> first_at = first_at_position(mesh.vertices);
     const SelfIntersections crossing = find_self_intersections(mesh, first_at, context);
-    MeshCensus census{
-        edges.counts,   edges.valence,     edges.edges, measure_shapes(mesh, dropped), length(box.max - box.min),
-        crossing.pairs, crossing.triangles};
+    MeshCensus census{edges.counts,
+                      edges.valence,
+                      edges.edges,
+                      measure_shapes(mesh, dropped),
+                      length(box.max - box.min),
+                      crossing.pairs,
+                      int64_t(crossing.triangles.size())};
     for (uint32_t v = 0; v < first_at.size(); ++v) census.counts.duplicate_vertices += first_at[v] != v;
     return census;
   });

@@ -203,7 +203,8 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh, const std::v
     check_cancel(context, "intersections");
     SelfIntersections found;
     for (const int64_t count : pairs) found.pairs += count;
-    for (size_t i = 0; i < tested.size(); ++i) found.triangles += meets[i];
+    for (size_t i = 0; i < tested.size(); ++i)
+      if (meets[i]) found.triangles.push_back(tested[i]);
     return found;
   });
 }

@@ -10,8 +10,8 @@
 namespace isoshell {
 
 struct SelfIntersections {
-  int64_t pairs = 0;      ///< of triangles that meet outside of the corners that they share
-  int64_t triangles = 0;  ///< that belong to one
+  int64_t pairs = 0;                ///< of triangles that meet outside of the corners that they share
+  std::vector<uint32_t> triangles;  ///< that belong to one; ascending
 };
 
 /// Per vertex the smallest index of those at its position; -0 is 0.

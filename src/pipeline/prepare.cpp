@@ -257,8 +257,8 @@ Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested,
   const TriangleSoup& soup = pulled ? *pulled : given_soup;
   report.input.far = soup.far;
   if (!given_options.regions.empty()) {
-    PartRegions found =
-        timed(report, "regions", context, [&] { return find_part_regions(soup, given_options.regions, context); });
+    PartRegions found = timed(report, "regions", context,
+                              [&] { return find_part_regions(soup, part_options(given_options, soup), context); });
     report.warnings = std::move(found.warnings);
     return prepare_walls(found.walls, given_options, std::move(report), context);
   }

@@ -13,14 +13,14 @@ namespace isoshell {
 
 /// As find_part_regions() makes them; tells its warnings, and notes which there are.
 /// Throws: as that, and usage for an input that is no mesh.
-inline TriangleSoup walls_of_parts(const Input& input, const std::string& parts, const Tell& tell, InputFacts& facts,
-                                   Context& context) {
-  const std::string asked = "--regions " + parts, name = input.facts.name();
+inline TriangleSoup walls_of_parts(const Input& input, const RemeshOptions& options, const Tell& tell,
+                                   InputFacts& facts, Context& context) {
+  const std::string asked = "--regions " + options.regions, name = input.facts.name();
   if (input.facts.kind != InputKind::mesh)
     throw Error(ErrorCode::usage, "options", asked + " is for meshes, and " + name + " is none; leave it out");
   if (!input.soup.regions.empty())
     throw Error(ErrorCode::usage, "options", asked + ": the faces of " + name + " part regions already; leave it out");
-  PartRegions found = find_part_regions(input.soup, parts, context);
+  PartRegions found = find_part_regions(input.soup, part_options(options, input.soup), context);
   if (tell)
     for (const std::string& text : found.warnings) tell(MessageKind::warning, name + ": " + text);
   facts.walls = find_region_walls(found.walls);

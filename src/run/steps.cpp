@@ -238,8 +238,8 @@ class RunSteps::Run {
   void find_surface() {
     if (std::optional<TriangleSoup> pulled = pull_back_far_vertices(input_->soup, options_.values, *context_))
       input_->soup = std::move(*pulled);
-    if (const std::string& parts = options_.values.regions; !parts.empty() && !walls_)
-      walls_ = timed("regions", [&] { return walls_of_parts(*input_, parts, teller(), record_.input, *context_); });
+    if (const RemeshOptions& options = options_.values; !options.regions.empty() && !walls_)
+      walls_ = timed("regions", [&] { return walls_of_parts(*input_, options, teller(), record_.input, *context_); });
   }
 
   void read_sizing_field() {

@@ -26,7 +26,7 @@ RemeshOptions options_for(int64_t vertices) {
 TriangleSoup two_regions() {
   TriangleSoup cubes = shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({1, 0, 0}, {2, 1, 1}));
   TestContext context;
-  return find_part_regions(cubes, "components", context).walls;
+  return find_part_regions(cubes, {"components"}, context).walls;
 }
 
 template <class T, class = void>

@@ -7,6 +7,7 @@
 #include "isoshell/part_regions.h"
 #include "isoshell/region_census.h"
 #include "isoshell/remesh.h"
+#include "regions/found_parts.h"
 #include "regions/part_soups.h"
 #include "regions/region_oracle.h"
 #include "support/refusals.h"
@@ -17,28 +18,10 @@ using namespace isoshell;
 
 namespace {
 
-PartRegions regions_of(const TriangleSoup& soup, const std::string& parts) {
-  CpuContext context;
-  return find_part_regions(soup, parts, context);
-}
-
-double volume_of(const TriangleSoup& walls, int32_t label) {
-  return volumes_of_regions(walls.vertices, walls.triangles, walls.regions)[label];
-}
-
 int64_t faces_between(const FaceRegions& regions, int32_t a, int32_t b) {
   int64_t count = 0;
   for (const auto& [behind, front] : regions.labels) count += std::minmax(behind, front) == std::minmax(a, b);
   return count;
-}
-
-void add_groups(TriangleSoup& soup, const std::vector<std::pair<std::string, size_t>>& groups) {
-  Attribute a{kGroupName, NumberType::i32, 1, {}, AttributeDomain::face};
-  for (const auto& [name, faces] : groups) {
-    a.values.insert(a.values.end(), faces, double(a.labels.size()));
-    a.labels.push_back(name);
-  }
-  soup.attributes.push_back(std::move(a));
 }
 
 /// Sound regions on so many vertices, which is what was asked for.
@@ -178,23 +161,10 @@ TEST_CASE("parts: what is refused is named", "[regions][unit]") {
   CHECK(contains(message_of(ErrorCode::usage, [&] { regions_of(soup, "groups"); }), "no groups and no objects"));
   CpuContext context;
   context.memory_limit_bytes = 1000;
-  CHECK(contains(message_of(ErrorCode::out_of_memory, [&] { find_part_regions(soup, "components", context); }),
+  CHECK(contains(message_of(ErrorCode::out_of_memory, [&] { find_part_regions(soup, {"components"}, context); }),
                  "raise --max-memory"));
   const TriangleSoup walls = regions_of(soup, "components").walls;
   CHECK(contains(message_of(ErrorCode::usage, [&] { regions_of(walls, "cells"); }), "parts regions already"));
-}
-
-TEST_CASE("parts: one in another is left to the first of them, and a warning says so", "[regions][unit]") {
-  const TriangleSoup big = shapes::box({0, 0, 0}, {4, 4, 4}), small = shapes::box({1, 1, 1}, {2, 2, 2});
-  const PartRegions kept = regions_of(shapes::together(small, big), "components");
-  CHECK(volume_of(kept.walls, 1) == Approx(1));
-  CHECK(volume_of(kept.walls, 2) == Approx(63));
-  REQUIRE(kept.warnings.size() == 1);
-  CHECK(contains(kept.warnings[0], "part 1 and part 2 overlap in a volume of 1"));
-  const PartRegions swallowed = regions_of(shapes::together(big, small), "components");
-  CHECK(pairs_of(swallowed.walls.regions) == std::set<std::array<int32_t, 2>>{{0, 1}});
-  CHECK(swallowed.walls.triangles.size() == 12);
-  CHECK(contains(swallowed.warnings.at(0), "100 % of the second"));
 }
 
 TEST_CASE("parts: overlaps are measured where faces disagree about the outside", "[regions][unit]") {

@@ -16,6 +16,9 @@ namespace isoshell {
 namespace {
 
 constexpr uint32_t kMostAround = 1024;  ///< triangles at a vertex: all pairs of them are looked at
+/// Of the lattice. What is nearer is made one, as parts that are nearer to each other than rounding moves them would
+/// meet again once they are rounded. More bends sheets that were moved apart into each other again.
+constexpr double kNearSteps = .5;
 
 /// Of points of the lattice. Where very many triangles meet at a vertex it is not looked at.
 bool meets_itself(const FeatureMesh& mesh, const LatticeFrame& frame, const Context& context) {
@@ -32,16 +35,6 @@ bool has_edges_of_many_faces(const SearchedSurface& searched) {
   return std::any_of(found.begin(), found.end(), [](const CurveEdge& e) { return e.kind == CurveKind::non_manifold; });
 }
 
-/// Of a union that makes one what is nearer than half a step of the frame's lattice, or more where the surface is
-/// longer than kSteps of these: parts that lie nearer to each other than rounding moves them would be apart, and meet
-/// once they are rounded.
-WorldBox box_of_union(const LatticeFrame& frame) {
-  constexpr int32_t kSteps = 1 << 19;
-  const int32_t longest_vox = *std::max_element(frame.extent_vox, frame.extent_vox + 3);
-  const double side = std::max(kSteps / kOneVoxelQ8, longest_vox) * frame.voxel_size;
-  return {frame.origin, frame.origin + WorldPoint{side, side, side}};
-}
-
 }  // namespace
 
 void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport& report, Context& context) {
@@ -53,7 +46,8 @@ void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport
   TriangleSoup soup;
   soup.vertices = searched.mesh.vertices;
   soup.triangles = searched.mesh.triangles;
-  const UnionOptions options{p.options.outer_only, false, frame.voxel_size * kSheetGapVox, true, box_of_union(frame)};
+  const UnionOptions options{p.options.outer_only, false, frame.voxel_size * kSheetGapVox, true,
+                             kNearSteps * frame.voxel_size / kOneVoxelQ8};
   UnionReport united;
   const TriangleSoup whole = boolean_union(soup, options, united, context).soup;
   if (!united.changed_anything()) return;

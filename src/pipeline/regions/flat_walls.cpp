@@ -2,12 +2,14 @@
 #include "pipeline/regions/flat_walls.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 #include "geometry/world_vector.h"
+#include "measure/self_intersections.h"
 
 namespace isoshell {
 namespace {
@@ -90,9 +92,7 @@ void put_on_corners(const CutSurface& cut, const RegionWalls& walls, View<const 
       move_to(walls.mesh.vertices[of_walls], cut, mesh.vertices[v]);
 }
 
-}  // namespace
-
-void put_on_planes(const CutSurface& cut, const RegionWalls& walls, View<const uint32_t> home, TriangleMesh& mesh) {
+void move_to_planes(const CutSurface& cut, const RegionWalls& walls, TriangleMesh& mesh) {
   const std::vector<Plane> planes = planes_of_patches(cut, walls);
   std::vector<std::pair<uint32_t, uint32_t>> at_vertex;  // vertex, patch
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -108,7 +108,45 @@ void put_on_planes(const CutSurface& cut, const RegionWalls& walls, View<const u
     for (; end < at_vertex.size() && at_vertex[end].first == v; ++end) meeting.push_back(planes[at_vertex[end].second]);
     move_to(nearest_on(meeting, mesh.vertices[v]), cut, mesh.vertices[v]);
   }
+}
+
+/// Whether a triangle turned by 60 degrees or more, as needles do.
+bool has_turned(const std::array<uint32_t, 3>& t, const std::vector<WorldPoint>& from,
+                const std::vector<WorldPoint>& to) {
+  const WorldPoint was = doubled_area(from[t[0]], from[t[1]], from[t[2]]),
+                   is = doubled_area(to[t[0]], to[t[1]], to[t[2]]);
+  return !(2 * dot(was, is) > length(was) * length(is));
+}
+
+/// Triangles that turned, or meet others.
+std::vector<uint32_t> spoiled_triangles(const TriangleMesh& mesh, const std::vector<WorldPoint>& before,
+                                        Context& context) {
+  std::vector<uint32_t> spoiled = find_self_intersections(mesh, first_at_position(mesh.vertices), context).triangles;
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    if (has_turned(mesh.triangles[t], before, mesh.vertices)) spoiled.push_back(t);
+  return spoiled;
+}
+
+/// Moves vertices of triangles back; whether any were elsewhere.
+bool move_back(const std::vector<uint32_t>& triangles, const std::vector<WorldPoint>& before, TriangleMesh& mesh) {
+  bool has_moved = false;
+  for (const uint32_t t : triangles)
+    for (const uint32_t v : mesh.triangles[t]) {
+      has_moved = has_moved || !(mesh.vertices[v] == before[v]);
+      mesh.vertices[v] = before[v];
+    }
+  return has_moved;
+}
+
+}  // namespace
+
+void put_on_planes(const CutSurface& cut, const RegionWalls& walls, View<const uint32_t> home, TriangleMesh& mesh,
+                   Context& context) {
+  const std::vector<WorldPoint> before = mesh.vertices;
+  move_to_planes(cut, walls, mesh);
   put_on_corners(cut, walls, home, mesh);
+  while (move_back(spoiled_triangles(mesh, before, context), before, mesh)) {
+  }
 }
 
 }  // namespace isoshell

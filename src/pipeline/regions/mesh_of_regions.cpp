@@ -89,7 +89,7 @@ TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatc
     timed(report, "volumes", context, [&] { restore_volumes(cut, *p.walls, joined, context); });
   TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
   mesh.features = std::move(joined.features);
-  if (!p.walls->regions.are_of_voxels) put_on_planes(cut, *p.walls, joined.home.view(), mesh);
+  if (!p.walls->regions.are_of_voxels) put_on_planes(cut, *p.walls, joined.home.view(), mesh, context);
   mesh.regions = without_labels(p.walls->regions);
   const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(cut);
   for (const uint32_t patch : mesh.features.patch) mesh.regions.labels.push_back(labels[patch]);

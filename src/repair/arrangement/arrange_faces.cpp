@@ -16,7 +16,7 @@ namespace {
 // What is bent through points within reach may come into reach of others, and again, where many surfaces are nearly
 // one. After some rounds only what meets is cut, and less is bent. Where that does not end either, all is tried again
 // with a smaller reach.
-constexpr double kReaches[] = {128, 96, 64, 32, 16};
+constexpr double kReachSteps = 128, kReaches[] = {1, .75, .5, .25, .125};
 constexpr int kNearEdgeRounds = 3, kFullRounds = 8, kMostRounds = 32;
 constexpr size_t kMostContactsOfFace = 16, kMostGrowth = 3, kFewFaces = 4096;
 
@@ -167,7 +167,7 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
   for (const double reach : kReaches) {
     if (work_left < 0) return {};
     LatticeFaces faces = whole;
-    faces.reach_steps = reach;
+    faces.reach_steps = reach * std::max(kReachSteps, frame.steps(groups.near_world));
     StepPoint at{0, 0, 0};
     std::optional<LatticeFaces> cut = cut_all(std::move(faces), work_left, at, context);
     if (cut) return result_of(std::move(*cut), soup, welded, box);

@@ -18,6 +18,7 @@ struct ArrangedGroups {
   std::optional<WorldBox> box;  ///< of the lattice, around all triangles; none: theirs
   /// Per triangle whether it is known to meet others of its group in what they share alone; empty: of none.
   std::vector<uint8_t> is_checked = {};
+  double near_world = 0;  ///< corners nearer than twice that, corners and edges or faces, and edges are made one
 };
 
 struct ArrangedFaces {
@@ -34,15 +35,16 @@ struct ArrangedFaces {
 /// Two of these faces have corners and whole edges in common and nothing else, or all three corners, as where parts lie
 /// on each other: each keeps its own copy. That is decided exactly on a lattice of 2^28 steps along the longest side.
 /// Corners that are kept have the position of a corner of the soup to the last bit, which is within half a step of that
-/// on the lattice; new points lie on the lattice. What is nearer than 2^-20 of the longest side is made one: corners
-/// (the smaller position stays, by x, y, z), corners and edges or faces (these are bent through the corner), edges
-/// (both are bent through one point). Triangles lower than half of that vanish. What two faces have in common is an
-/// edge of both, also where a face ends within another. Faces that lie on each other have the same parts. Where
-/// cuts that are rounded do not come to an end, less is made one, down to an eighth of that. None where they do not
-/// then either, or where that takes far more work than any parts do: then `failed_at` is a place where they cross.
-/// Of two groups, which are arranged each, the triangles near the other group are looked at, and any that intersect.
-/// Throws: interrupted. Result: independent of threads. Cost: a tree of the boxes of all triangles that are looked at,
-/// pairs whose boxes meet, and rounds over those that were cut; in all no more than is proportional to the triangles.
+/// on the lattice; new points lie on the lattice. What is nearer than 2^-20 of the longest side is made one, or than
+/// twice near_world: corners (the smaller position stays, by x, y, z), corners and edges or faces (these are bent
+/// through the corner), edges (both are bent through one point). Triangles lower than half of that vanish. What two
+/// faces have in common is an edge of both, also where a face ends within another. Faces that lie on each other have
+/// the same parts. Where cuts that are rounded do not come to an end, less is made one, down to an eighth of that. None
+/// where they do not then either, or where that takes far more work than any parts do: then `failed_at` is a place
+/// where they cross. Of two groups, which are arranged each, the triangles near the other group are looked at, and any
+/// that intersect. Throws: interrupted. Result: independent of threads. Cost: a tree of the boxes of all triangles that
+/// are looked at, pairs whose boxes meet, and rounds over those that were cut; in all no more than is proportional to
+/// the triangles.
 std::optional<ArrangedFaces> arrange_faces(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context,
                                            const ArrangedGroups& groups = {});
 

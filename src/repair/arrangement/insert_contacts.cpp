@@ -13,6 +13,8 @@
 namespace isoshell::repair {
 namespace {
 
+constexpr double kMostJitterSteps = 8;
+
 class Cutter {
  public:
   Cutter(LatticeFaces& faces, Contacts contacts, const Context& context)
@@ -38,7 +40,7 @@ class Cutter {
   FaceCut cut_of(uint32_t f, const ContactPoints& points, const std::vector<FaceLine>& lines) const {
     FaceCut cut;
     cut.corner = faces_.face[f];
-    cut.jitter_steps = int(faces_.reach_steps / 16);
+    cut.jitter_steps = int(std::min(faces_.reach_steps / 16, kMostJitterSteps));
     for (size_t i = 0; i < 3; ++i) cut.border[i] = points.on_edge(cut.corner[i], cut.corner[(i + 1) % 3]);
     cut.inside = points.inside(f);
     auto line = std::lower_bound(lines.begin(), lines.end(), FaceLine{f, {0, 0}});

@@ -21,6 +21,7 @@ class StepFrame {
     const auto rounded = [](double x) { return int32_t(std::floor(x + kMarginSteps + .5)); };
     return {rounded(s.x), rounded(s.y), rounded(s.z)};
   }
+  double steps(double length_world) const { return length_world / a_step_; }
   WorldPoint to_world(StepPoint s) const {
     return least_ + a_step_ * WorldPoint{s.x - kMarginSteps, s.y - kMarginSteps, s.z - kMarginSteps};
   }

@@ -69,7 +69,7 @@ class Union {
         options_(options),
         report_(report),
         context_(context),
-        box_(options.lattice_box ? *options.lattice_box : box_of(soup.vertices, soup.triangles)),
+        box_(box_of(soup.vertices, soup.triangles)),
         given_(weld_vertices(soup.vertices, soup.triangles).position),
         parts_(find_solid_parts(soup, context)),
         part_of_(soup.triangles.size(), 0),
@@ -165,8 +165,8 @@ class Union {
 
   ArrangedFaces arranged(const Solids& solids, size_t first_of_second) {
     WorldPoint failed_at{0, 0, 0};
-    std::optional<ArrangedFaces> faces =
-        arrange_faces(solids.soup, failed_at, context_, {first_of_second, box_, solids.is_checked});
+    std::optional<ArrangedFaces> faces = arrange_faces(solids.soup, failed_at, context_,
+                                                       {first_of_second, box_, solids.is_checked, options_.near_world});
     if (!faces) throw Failure{"the faces cannot be cut along each other there", failed_at};
     for (size_t t = 0; t < solids.source.size(); ++t) is_cut_[solids.source[t]] |= faces->is_cut[t];
     return std::move(*faces);

@@ -1,12 +1,15 @@
 // See labels.h.
 #include "repair/regions/labels.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <utility>
 
 namespace isoshell::repair {
 namespace {
+
+constexpr double kWithin = .99;  ///< of a part's volume, of one that lies in another
 
 /// Parts that a cell is inside of, ascending, with how often they wind around it.
 using Winding = std::vector<std::pair<uint32_t, int32_t>>;
@@ -50,25 +53,47 @@ class CellWalk {
     CellParts out;
     out.of_cell.assign(cells_.count(), kNoPart);
     out.volume_world.assign(chains_.part.size(), 0);
-    std::map<std::pair<uint32_t, uint32_t>, double> overlaps;
+    PairVolumes shared;
     for (size_t cell = 0; cell < cells_.count(); ++cell) {
-      std::map<uint32_t, int32_t> inside;
-      for (const auto& [part, times] : winding_[cell]) inside[parent_[part] == kNoPart ? part : parent_[part]] += times;
-      for (const auto& [part, times] : inside) {
-        if (times == 0) continue;
-        out.volume_world[part] += cells_.volume_world[cell];
-        uint32_t& keeper = out.of_cell[cell];
-        if (keeper == kNoPart)
-          keeper = part;
-        else
-          overlaps[{keeper, part}] += cells_.volume_world[cell];
+      const std::vector<uint32_t> inside = parts_around(cell);
+      for (size_t i = 0; i < inside.size(); ++i) {
+        out.volume_world[inside[i]] += cells_.volume_world[cell];
+        for (size_t j = 0; j < i; ++j) shared[{inside[j], inside[i]}] += cells_.volume_world[cell];
       }
     }
-    for (const auto& [parts, volume] : overlaps) out.overlaps.push_back({parts.first, parts.second, volume});
+    const auto is_within = [&](uint32_t part, uint32_t other) {
+      const auto both = shared.find({std::min(part, other), std::max(part, other)});
+      return both != shared.end() && both->second >= kWithin * out.volume_world[part] &&
+             out.volume_world[part] < out.volume_world[other];
+    };
+    for (size_t cell = 0; cell < cells_.count(); ++cell) {
+      const std::vector<uint32_t> inside = parts_around(cell);
+      for (const uint32_t part : inside)
+        if (std::none_of(inside.begin(), inside.end(), [&](uint32_t other) { return is_within(other, part); })) {
+          out.of_cell[cell] = part;
+          break;
+        }
+    }
+    for (const auto& [parts, volume] : shared)
+      if (!is_within(parts.first, parts.second) && !is_within(parts.second, parts.first))
+        out.overlaps.push_back({parts.first, parts.second, volume});
     return out;
   }
 
  private:
+  using PairVolumes = std::map<std::pair<uint32_t, uint32_t>, double>;
+
+  /// Parts that a cell is inside of, ascending; for hollows those that have them.
+  std::vector<uint32_t> parts_around(size_t cell) const {
+    std::map<uint32_t, int32_t> times_inside;
+    for (const auto& [part, times] : winding_[cell])
+      times_inside[parent_[part] == kNoPart ? part : parent_[part]] += times;
+    std::vector<uint32_t> inside;
+    for (const auto& [part, times] : times_inside)
+      if (times != 0) inside.push_back(part);
+    return inside;
+  }
+
   /// From the outside through all walls.
   void walk() {
     std::vector<std::vector<uint32_t>> walls_of(cells_.count());

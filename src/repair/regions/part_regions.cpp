@@ -14,6 +14,7 @@
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
 #include "repair/regions/labels.h"
+#include "repair/regions/thin_cells.h"
 #include "repair/regions/turn_sheets.h"
 
 namespace isoshell {
@@ -122,6 +123,32 @@ CellLabels labels_of_cells(size_t cells) {
   return out;
 }
 
+/// In their order, without gaps.
+CellLabels numbered_again(CellLabels labels) {
+  std::vector<int32_t> kept = labels.of_cell;
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  for (int32_t& label : labels.of_cell)
+    label = int32_t(std::lower_bound(kept.begin(), kept.end(), label) - kept.begin());
+  return labels;
+}
+
+void warn_of_thin_cells(const JoinedCells& joined, double thin_world, std::vector<std::string>& warnings) {
+  if (joined.count == 0) return;
+  const WorldPoint& at = *joined.first;
+  warnings.push_back(sentence(counted(joined.count, "space"), " between faces, the first near ", at.x, ' ', at.y, ' ',
+                              at.z, joined.count == 1 ? ", is" : ", are", " less than ", thin_world,
+                              " thick, too thin for such edges, and ", joined.count == 1 ? "belongs" : "belong",
+                              " to what is beside; ask for more --vertices"));
+}
+
+/// Per wall whether it has one cell on both sides: a sheet.
+std::vector<uint8_t> walls_inside_of_cells(const Walls& walls, const Cells& cells) {
+  std::vector<uint8_t> is_sheet(walls.triangle.size());
+  for (size_t w = 0; w < is_sheet.size(); ++w) is_sheet[w] = cells.of_wall[w][0] == cells.of_wall[w][1];
+  return is_sheet;
+}
+
 /// Those that triangles have, in their order.
 void take_vertices(const std::vector<WorldPoint>& points, TriangleSoup& soup) {
   std::vector<uint32_t> number(points.size(), 0);
@@ -164,9 +191,9 @@ std::vector<uint8_t> walls_of_sheets(const Walls& walls, const Chains& chains) {
 }
 
 /// What lies on or passes through another is cut there.
-ArrangedFaces arranged(const TriangleSoup& soup, Context& context) {
+ArrangedFaces arranged(const TriangleSoup& soup, double near_world, Context& context) {
   WorldPoint at{0, 0, 0};
-  std::optional<ArrangedFaces> faces = arrange_faces(soup, at, context);
+  std::optional<ArrangedFaces> faces = arrange_faces(soup, at, context, {0, {}, {}, near_world});
   if (!faces)
     throw Error(ErrorCode::usage, "regions",
                 sentence("the faces cannot be cut along each other near ", at.x, ' ', at.y, ' ', at.z,
@@ -176,19 +203,25 @@ ArrangedFaces arranged(const TriangleSoup& soup, Context& context) {
   return std::move(*faces);
 }
 
-PartRegions part_regions(const TriangleSoup& soup, const std::string& how, Context& context) {
+PartRegions part_regions(const TriangleSoup& soup, const PartOptions& options, Context& context) {
+  const std::string& how = options.parts;
   Parts parts;
   if (how != "cells") parts = how == "components" ? find_components(soup, context) : find_parts_by(soup, how);
-  const Walls walls = find_walls(arranged(soup, context));
+  const Walls walls = find_walls(arranged(soup, options.near_world, context));
   const Cells cells = find_cells(walls, context);
   PartRegions out;
   if (how == "cells") {
-    const std::vector<uint8_t> are_sheets(walls.triangle.size(), 1);
-    out.walls = kept_walls(walls, cells, labels_of_cells(cells.count()), are_sheets);
+    CellLabels labels = labels_of_cells(cells.count());
+    warn_of_thin_cells(join_thin_cells(walls, cells, options.thin_world, true, labels.of_cell), options.thin_world,
+                       out.warnings);
+    out.walls = kept_walls(walls, cells, numbered_again(std::move(labels)), walls_inside_of_cells(walls, cells));
   } else {
     const Chains chains = find_chains(walls, parts, context);
     const CellParts found = find_parts_of_cells(walls, cells, chains, how == "components");
-    out.walls = kept_walls(walls, cells, labels_of_parts(parts, chains, found), walls_of_sheets(walls, chains));
+    CellLabels labels = labels_of_parts(parts, chains, found);
+    warn_of_thin_cells(join_thin_cells(walls, cells, options.thin_world, false, labels.of_cell), options.thin_world,
+                       out.warnings);
+    out.walls = kept_walls(walls, cells, labels, walls_of_sheets(walls, chains));
     warn_of_open_solids(parts, chains, out.warnings);
     warn_of_overlaps(parts, found, out.warnings);
   }
@@ -205,16 +238,16 @@ PartRegions part_regions(const TriangleSoup& soup, const std::string& how, Conte
 }  // namespace
 }  // namespace repair
 
-PartRegions find_part_regions(const TriangleSoup& soup, const std::string& parts, Context& context) {
+PartRegions find_part_regions(const TriangleSoup& soup, const PartOptions& options, Context& context) {
   if (!soup.regions.empty())
-    throw Error(ErrorCode::usage, "regions", "the input parts regions already; leave out --regions " + parts);
+    throw Error(ErrorCode::usage, "regions", "the input parts regions already; leave out --regions " + options.parts);
   const int64_t bytes = repair::kBytesPerFace * int64_t(soup.triangles.size());
   if (context.memory_limit_bytes > 0 && bytes > context.memory_limit_bytes)
     throw Error(ErrorCode::out_of_memory, "memory",
                 "the walls of " + counted(int64_t(soup.triangles.size()), "face") + " need about " +
                     readable_bytes(bytes) + ", more than the limit of " + readable_bytes(context.memory_limit_bytes) +
                     "; raise --max-memory");
-  return run_with_threads(context, [&] { return repair::part_regions(soup, parts, context); });
+  return run_with_threads(context, [&] { return repair::part_regions(soup, options, context); });
 }
 
 }  // namespace isoshell

@@ -1,0 +1,101 @@
+// Parts of meshes that lie in others, nearly on others, or leave thin spaces between them.
+#include <cmath>
+
+#include "isoshell/part_regions.h"
+#include "isoshell/region_census.h"
+#include "isoshell/remesh.h"
+#include "regions/found_parts.h"
+#include "regions/part_soups.h"
+#include "regions/region_oracle.h"
+#include "support/refusals.h"
+#include "support/test_context.h"
+
+using namespace isoshell;
+
+namespace {
+
+TriangleSoup together_as_groups(const std::vector<TriangleSoup>& parts) {
+  TriangleSoup all;
+  std::vector<std::pair<std::string, size_t>> groups;
+  for (const TriangleSoup& part : parts) {
+    all = shapes::together(std::move(all), part);
+    groups.push_back({"part " + std::to_string(groups.size()), part.triangles.size()});
+  }
+  add_groups(all, groups);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("parts: one that lies in another keeps its space, whichever comes first", "[regions][unit]") {
+  const TriangleSoup big = shapes::box({0, 0, 0}, {4, 4, 4}), small = shapes::box({1, 1, 1}, {2, 2, 2}),
+                     smallest = shapes::box({1.25, 1.25, 1.25}, {1.5, 1.5, 1.5});
+  for (const char* parts : {"components", "groups"}) {
+    const PartRegions first = regions_of(together_as_groups({small, big}), parts);
+    CHECK(volume_of(first.walls, 1) == Approx(1));
+    CHECK(volume_of(first.walls, 2) == Approx(63));
+    CHECK(first.warnings.empty());
+    const PartRegions last = regions_of(together_as_groups({big, smallest, small}), parts);
+    CHECK(volume_of(last.walls, 1) == Approx(63));
+    CHECK(volume_of(last.walls, 2) == Approx(1. / 64));
+    CHECK(volume_of(last.walls, 3) == Approx(1 - 1. / 64));
+    CHECK(last.warnings.empty());
+  }
+}
+
+TEST_CASE("parts: of two with the same space the first keeps it, and a warning says so", "[regions][unit]") {
+  const TriangleSoup cube = shapes::box({0, 0, 0}, {4, 4, 4});
+  const PartRegions found = regions_of(shapes::together(cube, cube), "components");
+  CHECK(volume_of(found.walls, 1) == Approx(64));
+  REQUIRE(found.warnings.size() == 1);
+  CHECK(contains(found.warnings[0], "part 1 and part 2 overlap in a volume of 64, 100 % of the second"));
+}
+
+TEST_CASE("parts: what is nearer than is asked for is one wall", "[regions][unit]") {
+  const TriangleSoup low = shapes::box({0, 0, 0}, {4, 4, 1}), high = shapes::box({1, 1, 1.01}, {3, 3, 2});
+  const auto pairs_when = [&](double near_world) {
+    TestContext context;
+    return pairs_of(find_part_regions(shapes::together(low, high), {"components", near_world}, context).walls.regions);
+  };
+  CHECK(pairs_when(.009) == std::set<std::array<int32_t, 2>>{{0, 1}, {0, 2}});
+  CHECK(pairs_when(.011) == std::set<std::array<int32_t, 2>>{{0, 1}, {0, 2}, {1, 2}});
+}
+
+TEST_CASE("parts: a thin space between parts belongs to what is beside", "[regions][unit]") {
+  // A box around another one, with a gap of .01 on all sides but the one that they share.
+  const TriangleSoup around = shapes::box({0, 0, 0}, {4, 4, 4}),
+                     hollow = shapes::inside_out(shapes::box({1, 1, 1}, {3, 3, 3})),
+                     inner = shapes::box({1.01, 1.01, 1.01}, {2.99, 2.99, 2.99});
+  const TriangleSoup all = shapes::together(shapes::together(around, hollow), inner);
+  const auto found_when = [&](double thin_world) {
+    TestContext context;
+    return find_part_regions(all, {"components", 0, thin_world}, context);
+  };
+  const PartRegions apart = found_when(.009), joined = found_when(.011);
+  CHECK(apart.warnings.empty());
+  CHECK(volume_of(apart.walls, 1) == Approx(64 - 8));
+  CHECK(volume_of(joined.walls, 1) == Approx(64 - std::pow(1.98, 3)));
+  REQUIRE(joined.warnings.size() == 1);
+  CHECK(contains(joined.warnings[0], "1 space between faces, the first near 1 1 1, is less than 0.011 thick"));
+  TestContext context;
+  const PartRegions cells = find_part_regions(all, {"cells", 0, .011}, context);
+  CHECK(pairs_of(cells.walls.regions) == std::set<std::array<int32_t, 2>>{{0, 1}, {1, 2}});
+}
+
+TEST_CASE("parts: plates with any gap between them keep their count, and share a wall or none", "[regions][unit]") {
+  for (const double gap : {0., 1e-9, 5e-6, 2e-5, 1e-4, 3e-4, 1e-3, 3e-3}) {
+    TriangleSoup plates = shapes::together(shapes::box({0, 0, 0}, {4, 3, .5}), shapes::box({.5, .5, .5 + gap}, {3, 2, 1}));
+    for (WorldPoint& p : plates.vertices) p = {.8 * p.x - .6 * p.z, p.y, .6 * p.x + .8 * p.z};
+    RemeshOptions options;
+    options.vertices = 1000;
+    options.regions = "components";
+    TestContext context;
+    const RemeshResult result = remesh(plates, options, context);
+    INFO("a gap of " << gap);
+    CHECK(result.mesh.vertices.size() == 1000);
+    const RegionCensus census = take_region_census(result.mesh, context);
+    CHECK(census.is_sound());
+    CHECK(result.report.optimize.self_intersections == 0);
+    CHECK(volumes_of_regions(result.mesh.vertices, result.mesh.triangles, result.mesh.regions)[2] == Approx(2.5 * 1.5 * (.5 - gap)).epsilon(2e-3));
+  }
+}
