@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdlib>
-#include <limits>
 #include <new>
 #include <type_traits>
 #include <vector>

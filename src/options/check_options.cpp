@@ -13,14 +13,17 @@ RemeshOptions checked(RemeshOptions values) {
     }
     set_value(row, row.member_name, value_of(row, options), options);
   }
-  check_method(options);
+  check_together(options);
   return std::move(options.values);
 }
 
-void check_method(const RequestedOptions& options) {
+void check_together(const RequestedOptions& options) {
   const RunOptions& o = options.values;
-  if (o.method != Method::shell) return;
   const auto refuse = [](const char* what) { throw Error(ErrorCode::usage, "options", what); };
+  if (o.snap_world && o.regions.empty())
+    refuse(
+        "--snap is for the parts of a mesh: say what they are by --regions, as --regions components, or leave it out");
+  if (o.method != Method::shell) return;
   if (o.features.creases == Features::Creases::threshold)
     refuse("--features DEG needs --method sheet: the paper's loop on the shell knows no curves");
   if (o.has_lines()) refuse("lines in --features need --method sheet: the paper's loop on the shell knows no curves");

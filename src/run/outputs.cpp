@@ -164,7 +164,7 @@ std::vector<NamedFile> inputs_of(const RunRequest& r) {
 }
 
 void check_request(const RunRequest& r) {
-  check_method(r.options);
+  check_together(r.options);
   if (r.output.recenter.is_asked && r.stop_after != StopAfter::mesh)
     refuse_use("--recenter is for files of meshes; leave out --stop-after");
   if (r.gates.count && (r.options.values.edge_length_world || r.options.lengths_decide()))

@@ -83,7 +83,7 @@ class RunSteps::Run {
     record_.input = input_->facts;
     if (!input_->stage) return;
     options_ = adopt_options(*input_->stage, input_->facts.path, options_);
-    check_method(options_);
+    check_together(options_);
     possible_features(options_.values, request_);  // refuses those of the stage file
     if (input_->stage->seeds && request_.stop_after == StopAfter::shell)
       refuse_use("INPUT is past the shell already; leave out --stop-after shell");
@@ -260,6 +260,7 @@ class RunSteps::Run {
     options.features = possible_features(options_.values, request_);
     options.want_samples = measures_all(request_);  // by find_risks
     options.regions.clear();                        // surface() has them
+    options.snap_world.reset();
     if (!input.stage) return isoshell::prepare(surface(), options, *context_);
     if (input.stage->seeds) options.features = {Features::Creases::off, 0};  // they stand on the sheet
     return isoshell::prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options, *context_);

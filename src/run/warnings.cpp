@@ -32,6 +32,8 @@ bool is_zero(const WorldPoint& p) { return p.x == 0 && p.y == 0 && p.z == 0; }
 std::string ways_to_fewer_curves(const RunRecord& record) {
   const FeatureReport& f = record.report.features;
   std::string ways;
+  if (record.regions && !record.options.regions.empty())
+    return ", as may --snap W, which makes one what is nearer than W";
   if (!f.kept || record.regions) return ways;
   if (f.curves > f.seams + f.lines)
     ways += ", as does to give up creases by --features off, or those that turn by less than DEG by --features DEG";

@@ -220,6 +220,8 @@ TEST_CASE("args: options by name mean what they mean on the command line", "[cli
   CHECK(sized.values.region_edge_lengths[1].region == "a=b");
   CHECK(sized.values.region_edge_lengths[1].edge_length_world == 2);
   CHECK(sized.lengths_decide());
+  CHECK(parse({"a.obj", "b.ply", "--regions", "groups", "--snap", ".02"}).run->run.options.values.snap_world == .02);
+  CHECK(contains(refusal({"a.obj", "b.ply", "--snap", ".02"}), "--snap is for the parts of a mesh"));
   CHECK(contains(refusal({"a.vdb", "b.ply", "--region-edge-length", "7"}), "as 7=0.5"));
   CHECK(
       contains(refusal({"a.vdb", "b.ply", "--region-edge-length", "7=0"}), "of region 7 is 0; it must be more than 0"));

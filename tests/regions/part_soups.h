@@ -83,9 +83,8 @@ inline TriangleSoup cylinder(double from, double to, uint32_t n = 32) {
   return s;
 }
 
-/// A pin of radius 1 and height 1 in the hole of a round plate of radius 3: each is closed, and the wall of the hole is
-/// there twice.
-inline TriangleSoup pin_in_a_plate(uint32_t n = 32) {
+/// A round plate of radius 3 and height 1 with a hole of radius 1.
+inline TriangleSoup plate_with_hole(uint32_t n) {
   TriangleSoup plate;
   const auto in_low = add_ring(plate, 1, 0, n), in_high = add_ring(plate, 1, 1, n);
   const auto out_low = add_ring(plate, 3, 0, n), out_high = add_ring(plate, 3, 1, n);
@@ -93,7 +92,7 @@ inline TriangleSoup pin_in_a_plate(uint32_t n = 32) {
   add_band(plate, out_high, in_high);
   add_band(plate, in_high, in_low);
   add_band(plate, in_low, out_low);
-  // Both have the same triangles in the hole: those of the plate begin at the other end of their diagonals.
+  // Pins have the same triangles in the hole: those of the plate begin at the other end of their diagonals.
   for (uint32_t i = 0; i < n; ++i) {
     auto& a = plate.triangles[4 * n + 2 * i];
     auto& b = plate.triangles[4 * n + 2 * i + 1];
@@ -101,7 +100,10 @@ inline TriangleSoup pin_in_a_plate(uint32_t n = 32) {
     a = {in_low[i], in_high[next], in_low[next]};
     b = {in_low[i], in_high[i], in_high[next]};
   }
-  return shapes::together(cylinder(0, 1, n), plate);
+  return plate;
 }
+
+/// A pin of radius 1 in the hole of that: each is closed, and the wall of the hole is there twice.
+inline TriangleSoup pin_in_a_plate(uint32_t n = 32) { return shapes::together(cylinder(0, 1, n), plate_with_hole(n)); }
 
 }  // namespace isoshell

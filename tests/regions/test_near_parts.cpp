@@ -1,7 +1,10 @@
 // Parts of meshes that lie in others, nearly on others, or leave thin spaces between them.
 #include <cmath>
 
+#include "isoshell/advanced/stages.h"
+#include "isoshell/boolean_union.h"
 #include "isoshell/part_regions.h"
+#include "isoshell/quality.h"
 #include "isoshell/region_census.h"
 #include "isoshell/remesh.h"
 #include "regions/found_parts.h"
@@ -51,6 +54,14 @@ TEST_CASE("parts: of two with the same space the first keeps it, and a warning s
   CHECK(contains(found.warnings[0], "part 1 and part 2 overlap in a volume of 64, 100 % of the second"));
 }
 
+TEST_CASE("parts: two copies of one part overlap, though one is a little smaller", "[regions][unit]") {
+  const TriangleSoup cube = shapes::box({0, 0, 0}, {4, 4, 4}), smaller = shapes::box({0, 0, 0}, {4, 4, 3.998});
+  const PartRegions found = regions_of(shapes::together(cube, smaller), "components");
+  CHECK(volume_of(found.walls, 1) == Approx(64));
+  REQUIRE(found.warnings.size() == 1);
+  CHECK(contains(found.warnings[0], "100 % of the second; part 1 keeps it"));
+}
+
 TEST_CASE("parts: what is nearer than is asked for is one wall", "[regions][unit]") {
   const TriangleSoup low = shapes::box({0, 0, 0}, {4, 4, 1}), high = shapes::box({1, 1, 1.01}, {3, 3, 2});
   const auto pairs_when = [&](double near_world) {
@@ -59,6 +70,19 @@ TEST_CASE("parts: what is nearer than is asked for is one wall", "[regions][unit
   };
   CHECK(pairs_when(.009) == std::set<std::array<int32_t, 2>>{{0, 1}, {0, 2}});
   CHECK(pairs_when(.011) == std::set<std::array<int32_t, 2>>{{0, 1}, {0, 2}, {1, 2}});
+}
+
+TEST_CASE("unions: what is nearer than is asked for is joined", "[regions][unit]") {
+  const TriangleSoup boxes = shapes::together(shapes::box({0, 0, 0}, {4, 4, 1}), shapes::box({1, 1, 1.01}, {3, 3, 2}));
+  for (const double near_world : {.009, .011}) {
+    UnionOptions options;
+    options.near_world = near_world;
+    UnionReport report;
+    TestContext context;
+    const UnitedSoup united = boolean_union(boxes, options, report, context);
+    CHECK(report.given_up.empty());
+    CHECK(measure_topology(united.soup, context).topology.components == (near_world < .01 ? 2 : 1));
+  }
 }
 
 TEST_CASE("parts: a thin space between parts belongs to what is beside", "[regions][unit]") {
@@ -84,7 +108,8 @@ TEST_CASE("parts: a thin space between parts belongs to what is beside", "[regio
 
 TEST_CASE("parts: plates with any gap between them keep their count, and share a wall or none", "[regions][unit]") {
   for (const double gap : {0., 1e-9, 5e-6, 2e-5, 1e-4, 3e-4, 1e-3, 3e-3}) {
-    TriangleSoup plates = shapes::together(shapes::box({0, 0, 0}, {4, 3, .5}), shapes::box({.5, .5, .5 + gap}, {3, 2, 1}));
+    TriangleSoup plates =
+        shapes::together(shapes::box({0, 0, 0}, {4, 3, .5}), shapes::box({.5, .5, .5 + gap}, {3, 2, 1}));
     for (WorldPoint& p : plates.vertices) p = {.8 * p.x - .6 * p.z, p.y, .6 * p.x + .8 * p.z};
     RemeshOptions options;
     options.vertices = 1000;
@@ -96,6 +121,24 @@ TEST_CASE("parts: plates with any gap between them keep their count, and share a
     const RegionCensus census = take_region_census(result.mesh, context);
     CHECK(census.is_sound());
     CHECK(result.report.optimize.self_intersections == 0);
-    CHECK(volumes_of_regions(result.mesh.vertices, result.mesh.triangles, result.mesh.regions)[2] == Approx(2.5 * 1.5 * (.5 - gap)).epsilon(2e-3));
+    CHECK(volumes_of_regions(result.mesh.vertices, result.mesh.triangles, result.mesh.regions)[2] ==
+          Approx(2.5 * 1.5 * (.5 - gap)).epsilon(2e-3));
   }
+}
+
+TEST_CASE("parts: a pin with other facets than its hole shares the wall when it is snapped", "[regions][unit]") {
+  const TriangleSoup loose = together_as_groups({plate_with_hole(36), cylinder(0, 1, 48)});  // .004 apart
+  RemeshOptions options;
+  options.vertices = 1500;
+  options.regions = "groups";
+  options.snap_world = .006;
+  TestContext context;
+  const RemeshResult result = remesh(loose, options, context);
+  CHECK(take_region_census(result.mesh, context).is_sound());
+  CHECK(result.mesh.vertices.size() == 1500);
+  CHECK(pairs_of(result.mesh.regions) == std::set<std::array<int32_t, 2>>{{0, 1}, {0, 2}, {1, 2}});
+  CHECK(measure_quality(result.mesh).theta_min_deg >= 30);
+  options.snap_world = .5;
+  CHECK(contains(message_of(ErrorCode::usage, [&] { remesh(loose, options, context); }),
+                 "--snap is 0.5; it may be at most a 20th of the longest side, 0.298858"));
 }

@@ -36,7 +36,7 @@ TEST_CASE("options json: what is not given is the number that always stood for i
       options_json(RemeshOptions{}) ==
       R"({"vertices":10000,"edge-length":0.0,"sizing":"","region-edge-length":"","adaptivity":0.0,)"
       R"("gradation":1.2,"resolution":0,"voxel-size":0.0,"band":2,"close-gaps":"auto","outer-only":false,)"
-      R"("method":"sheet","iterations":0,"tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close","regions":"",)"
+      R"("method":"sheet","iterations":0,"tolerance":-1.0,"step":0.0,"seed":0,"fit":"balanced","features":"auto","boundary":"close","regions":"","snap":0.0,)"
       R"("attributes":"all","uv-seams":"keep","color-features":false,"uniform-area":false})");
   const RequestedOptions back = parse_options_json(options_json(RemeshOptions{}));
   CHECK(back.values.vertices == 10000);
@@ -56,6 +56,7 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   o.edge_length_world = 0.1;
   o.resolution = 77;
   o.voxel_size_world = 1e-7;
+  o.snap_world = 3e-5;
   o.band_vox = 5;
   o.closing_world = 0.30000000000000004;
   o.max_passes = 9;
@@ -81,6 +82,7 @@ TEST_CASE("options json: every option survives the way there and back", "[option
   CHECK(b.edge_length_world == o.edge_length_world);
   CHECK(b.resolution == o.resolution);
   CHECK(b.voxel_size_world == o.voxel_size_world);
+  CHECK(b.snap_world == o.snap_world);
   CHECK(b.band_vox == o.band_vox);
   CHECK_FALSE(b.closing_vox);
   CHECK(b.closing_world == o.closing_world);

@@ -62,11 +62,11 @@ TEST_CASE("whole run: statistics have the keys of schema 1, whether written or a
   CHECK(j["regions"].is_null());
   CHECK(j["schema"] == 1);
   CHECK(keys(j["options"]) ==
-        std::set<std::string>{"vertices",          "edge-length", "band",       "outer-only", "method",
-                              "iterations",        "tolerance",   "step",       "seed",       "fit",
-                              "uniform-area",      "features",    "boundary",   "regions",    "attributes",
-                              "color-features",    "uv-seams",    "adaptivity", "gradation",  "sizing",
-                              "region-edge-length"});
+        std::set<std::string>{"vertices",           "edge-length", "band",       "outer-only", "method",
+                              "iterations",         "tolerance",   "step",       "seed",       "fit",
+                              "uniform-area",       "features",    "boundary",   "regions",    "attributes",
+                              "color-features",     "uv-seams",    "adaptivity", "gradation",  "sizing",
+                              "region-edge-length", "snap"});
   CHECK(keys(j["grid"]) == std::set<std::string>{"resolution", "voxel_size", "band", "closing", "grown"});
   CHECK(j["input"]["path"] == "ball");
   CHECK(j["output"]["format"] == "ply");

@@ -41,8 +41,8 @@ struct RequestedOptions {
 /// default, such as 10000 vertices beside a sizing field, is for the caller to add to `given`.
 RequestedOptions requested_options(RunOptions values, std::string sizing = "");
 
-/// What the paper's loop cannot do: curves, borders, frames and cells that are not even. Throws: usage for that with
-/// one of them.
-void check_method(const RequestedOptions& options);
+/// Options that need or rule out others: what the paper's loop cannot do, which are curves, borders, frames and cells
+/// that are not even, and --snap of no regions. Throws: usage for one of them.
+void check_together(const RequestedOptions& options);
 
 }  // namespace isoshell

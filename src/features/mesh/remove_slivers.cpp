@@ -30,6 +30,7 @@ constexpr double kRoundedAway = 1e-9;            // sums of two angles of 180 de
 constexpr double kParallel = .999;               // cosine between normals in one plane
 constexpr size_t kMostAround = 1024;             // triangles around a vertex that is changed
 constexpr size_t kTrianglesBetweenLooks = 4096;  // whether the run goes on
+constexpr size_t kMostChanges = 64;              // a thin triangle, far more than it takes
 constexpr double kMostCells = 8;                 // that a triangle's box meets, in the mean
 
 bool is_long(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c, double high) {
@@ -96,14 +97,14 @@ class Slivers : private EditableMesh {
   bool remove(std::vector<uint32_t> found, const Context& context) {
     waiting_ = with_planes_of(std::move(found));
     std::reverse(waiting_.begin(), waiting_.end());
-    bool has_changed = false;
-    for (size_t looks = 1; !waiting_.empty(); ++looks) {
+    size_t changes = 0;
+    for (size_t looks = 1, most = kMostChanges * waiting_.size(); !waiting_.empty() && changes < most; ++looks) {
       const uint32_t t = waiting_.back();
       waiting_.pop_back();
       if (looks % kTrianglesBetweenLooks == 0) check_cancel(context, "features");
-      if (!triangles()[t].is_gone() && change(t)) has_changed = true;
+      if (!triangles()[t].is_gone() && change(t)) ++changes;
     }
-    return has_changed;
+    return changes > 0;
   }
 
   /// Writes what is left into the mesh that it was made from.

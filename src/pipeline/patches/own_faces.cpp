@@ -20,13 +20,17 @@ constexpr uint32_t kMostAround = 1024;  ///< triangles at a vertex: all pairs of
 /// meet again once they are rounded. More bends sheets that were moved apart into each other again.
 constexpr double kNearSteps = .5;
 
-/// Of points of the lattice. Where very many triangles meet at a vertex it is not looked at.
-bool meets_itself(const FeatureMesh& mesh, const LatticeFrame& frame, const Context& context) {
+bool has_very_many_at_vertex(const FeatureMesh& mesh) {
   std::vector<uint32_t> around(mesh.vertices.size(), 0);
   for (const auto& t : mesh.triangles)
     for (const uint32_t v : t)
-      if (++around[v] > kMostAround) return false;
-  return !crossings_of(mesh, frame, context).empty();
+      if (++around[v] > kMostAround) return true;
+  return false;
+}
+
+/// Of points of the lattice.
+bool meets_itself(const FeatureMesh& mesh, const LatticeFrame& frame, const Context& context) {
+  return !has_very_many_at_vertex(mesh) && !crossings_of(mesh, frame, context).empty();
 }
 
 /// Parts that were apart by less than a step may share edges.
@@ -39,6 +43,7 @@ bool has_edges_of_many_faces(const SearchedSurface& searched) {
 
 void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport& report, Context& context) {
   const LatticeFrame& frame = p.surface.frame;
+  if (has_very_many_at_vertex(searched.mesh)) return;
   const bool meets = has_edges_of_many_faces(searched) ||
                      run_with_threads(context, [&] { return meets_itself(searched.mesh, frame, context); });
   check_cancel(context, "features");
@@ -53,10 +58,11 @@ void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport
   if (!united.changed_anything()) return;
   const InputTopology after = measure_topology(whole, context).topology;
   if (!after.closed || !after.oriented) return;
-  report.warnings.push_back(
-      counted(united.cut_faces, "face was", "faces were") +
-      " cut where the part touches or crosses itself, to within rounding; creases are those of what "
-      "it encloses");
+  if (united.cut_faces > 0)
+    report.warnings.push_back(
+        counted(united.cut_faces, "face was", "faces were") +
+        " cut where the part touches or crosses itself, to within rounding; creases are those of what "
+        "it encloses");
   const double rounding_world = searched.mesh.rounding_world;
   run_with_threads(context, [&] {
     searched.mesh = weld_for_features(whole);

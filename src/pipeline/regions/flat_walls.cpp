@@ -145,6 +145,7 @@ void put_on_planes(const CutSurface& cut, const RegionWalls& walls, View<const u
   const std::vector<WorldPoint> before = mesh.vertices;
   move_to_planes(cut, walls, mesh);
   put_on_corners(cut, walls, home, mesh);
+  if (mesh.vertices == before) return;
   while (move_back(spoiled_triangles(mesh, before, context), before, mesh)) {
   }
 }

@@ -17,6 +17,7 @@ namespace {
 // one. After some rounds only what meets is cut, and less is bent. Where that does not end either, all is tried again
 // with a smaller reach.
 constexpr double kReachSteps = 128, kReaches[] = {1, .75, .5, .25, .125};
+constexpr double kMostReachSteps = 1 << 24;  // a 16th of the longest side; boxes are numbers of 32 bits
 constexpr int kNearEdgeRounds = 3, kFullRounds = 8, kMostRounds = 32;
 constexpr size_t kMostContactsOfFace = 16, kMostGrowth = 3, kFewFaces = 4096;
 
@@ -151,12 +152,22 @@ std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, Step
   return {};
 }
 
+/// What is asked for, less, and as without a wish.
+std::vector<double> reaches_from(double most_steps) {
+  std::vector<double> reaches;
+  for (const double r : kReaches) reaches.push_back(r * most_steps);
+  for (const double r : kReaches)
+    if (r * kReachSteps < reaches.back()) reaches.push_back(r * kReachSteps);
+  return reaches;
+}
+
 std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context,
                                      const ArrangedGroups& groups) {
   const WeldedVertices welded = weld_vertices(soup.vertices, soup.triangles);
   const WorldBox box = groups.box ? *groups.box : box_of(welded.position);
   const StepFrame frame(box);
   LatticeFaces whole = snapped(soup, welded, frame);
+  whole.reach_steps = std::clamp(frame.steps(groups.near_world), kReachSteps, kMostReachSteps);
   if (groups.first_of_second > 0 && !unsettle_near(whole, groups.first_of_second)) {
     ArrangedFaces apart = result_of(std::move(whole), soup, welded, box);
     apart.is_near = false;
@@ -164,10 +175,10 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
   }
   unsettle_crossing(whole, groups.is_checked, context);
   int64_t work_left = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
-  for (const double reach : kReaches) {
+  for (const double reach_steps : reaches_from(whole.reach_steps)) {
     if (work_left < 0) return {};
     LatticeFaces faces = whole;
-    faces.reach_steps = reach * std::max(kReachSteps, frame.steps(groups.near_world));
+    faces.reach_steps = reach_steps;
     StepPoint at{0, 0, 0};
     std::optional<LatticeFaces> cut = cut_all(std::move(faces), work_left, at, context);
     if (cut) return result_of(std::move(*cut), soup, welded, box);

@@ -9,7 +9,7 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr double kWithin = .99;  ///< of a part's volume, of one that lies in another
+constexpr double kWithin = .99;  ///< of a part's volume, and at most of the other's: copies of one part overlap
 
 /// Parts that a cell is inside of, ascending, with how often they wind around it.
 using Winding = std::vector<std::pair<uint32_t, int32_t>>;
@@ -64,19 +64,21 @@ class CellWalk {
     const auto is_within = [&](uint32_t part, uint32_t other) {
       const auto both = shared.find({std::min(part, other), std::max(part, other)});
       return both != shared.end() && both->second >= kWithin * out.volume_world[part] &&
-             out.volume_world[part] < out.volume_world[other];
+             out.volume_world[part] < kWithin * out.volume_world[other];
     };
+    std::map<std::pair<uint32_t, uint32_t>, double> overlaps;
     for (size_t cell = 0; cell < cells_.count(); ++cell) {
       const std::vector<uint32_t> inside = parts_around(cell);
-      for (const uint32_t part : inside)
-        if (std::none_of(inside.begin(), inside.end(), [&](uint32_t other) { return is_within(other, part); })) {
-          out.of_cell[cell] = part;
-          break;
-        }
+      const auto has_none_within = [&](uint32_t part) {
+        return std::none_of(inside.begin(), inside.end(), [&](uint32_t other) { return is_within(other, part); });
+      };
+      const auto keeper = std::find_if(inside.begin(), inside.end(), has_none_within);
+      if (keeper == inside.end()) continue;
+      out.of_cell[cell] = *keeper;
+      for (auto other = keeper + 1; other != inside.end(); ++other)
+        if (!is_within(*keeper, *other)) overlaps[{*keeper, *other}] += cells_.volume_world[cell];
     }
-    for (const auto& [parts, volume] : shared)
-      if (!is_within(parts.first, parts.second) && !is_within(parts.second, parts.first))
-        out.overlaps.push_back({parts.first, parts.second, volume});
+    for (const auto& [parts, volume] : overlaps) out.overlaps.push_back({parts.first, parts.second, volume});
     return out;
   }
 

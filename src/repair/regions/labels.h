@@ -24,7 +24,7 @@ struct CellParts {
 };
 
 /// A cell belongs to the first part that it is inside of, that whose faces wind around it, of those in which no other
-/// of them lies: parts that lie in others, up to a hundredth of their volume, keep their space. A part that looks
+/// of them lies: parts that lie in larger ones, up to a hundredth of their volume, keep their space. A part that looks
 /// inward is the hollow of the smallest part around it when `have_hollows`, and of no other is turned. Cost: a walk
 /// over the cells, with the parts that each is inside of.
 CellParts find_parts_of_cells(const Walls& walls, const Cells& cells, const Chains& chains, bool have_hollows);

@@ -137,9 +137,9 @@ void warn_of_thin_cells(const JoinedCells& joined, double thin_world, std::vecto
   if (joined.count == 0) return;
   const WorldPoint& at = *joined.first;
   warnings.push_back(sentence(counted(joined.count, "space"), " between faces, the first near ", at.x, ' ', at.y, ' ',
-                              at.z, joined.count == 1 ? ", is" : ", are", " less than ", thin_world,
-                              " thick, too thin for such edges, and ", joined.count == 1 ? "belongs" : "belong",
-                              " to what is beside; ask for more --vertices"));
+                              at.z, joined.count == 1 ? ", is" : ", are", " less than ", thin_world, " thick, and ",
+                              joined.count == 1 ? "belongs" : "belong",
+                              " to what is beside; more --vertices keep thinner ones, or a smaller --snap"));
 }
 
 /// Per wall whether it has one cell on both sides: a sheet.
