@@ -48,10 +48,10 @@ struct UnitedSoup {
 /// and lies in no other is turned first, all are when their volumes sum up to less than nothing, and one that looks
 /// inward in another bounds a hollow of it. Solid is where all wind more than 0 times in all; so rooms that walls
 /// enclose stay. Where edges have more than two faces, whose sums are no closed surfaces, a component encloses what
-/// some of its faces look away from. The cuts are those of arrange_faces(), of near_world. Faces that pass
-/// through others of their own component count as many times as they are around a place. Sheets of the union that would
-/// share an edge, of four faces or more, are moved into their solids there by sheet_gap_world each, so that the result
-/// is closed, and every edge has two faces. A soup in which nothing changes comes back as it is; so does one with a
+/// some of its faces look away from. The cuts are those of arrange_faces(), of near_world. Faces that pass through
+/// others of their own component count as many times as they are around a place. Sheets of the union that would share
+/// an edge, of four faces or more, are moved into their solids there by sheet_gap_world each, so that the result is
+/// closed, and every edge has two faces. A soup in which nothing changes comes back as it is; so does one with a
 /// component that is open or whose faces do not agree, unless those with borders are to be kept, and one that cannot be
 /// united, of which the report says why. Throws: interrupted. Result: independent of threads. Cost: for n components
 /// sorts of the faces log n times, and the cuts.

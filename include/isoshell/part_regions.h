@@ -28,13 +28,13 @@ struct PartRegions {
   std::vector<std::string> warnings;
 };
 
-/// Parts that are closed become regions 1, 2, ... in the order of the input, with
-/// their names; where they overlap the first one keeps the space, and one that lies in another keeps its own. A
-/// component that looks inward is the hollow of the smallest one around it. With "cells" every cell that faces enclose
-/// is a region of its own, by the order of their positions. Walls between two regions are there once; those with one
-/// region on both sides stay where a part that is open has them, and with "cells". Result: the same for every number of
-/// threads. Throws: usage for an attribute that is not there, and for a soup that has regions; nothing_to_mesh;
-/// interrupted. Cost: sorts of vertices, faces and edges.
+/// Parts that are closed become regions 1, 2, ... in the order of the input, with their names; where they overlap the
+/// first one keeps the space, and one that lies in another keeps its own. A component that looks inward is the hollow
+/// of the smallest one around it. With "cells" every cell that faces enclose is a region of its own, by the order of
+/// their positions. Walls between two regions are there once; those with one region on both sides stay where a part
+/// that is open has them, and with "cells". Result: the same for every number of threads. Throws: usage for an
+/// attribute that is not there, and for a soup that has regions; nothing_to_mesh; interrupted. Cost: sorts of vertices,
+/// faces and edges.
 PartRegions find_part_regions(const TriangleSoup& soup, const PartOptions& options, Context& context);
 
 }  // namespace isoshell

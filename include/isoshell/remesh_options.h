@@ -89,7 +89,7 @@ struct ShapeOptions {
   /// What the regions of a mesh are, as find_part_regions() takes it: its walls become one mesh; empty: it is one
   /// solid.
   std::string regions = {};
-  std::optional<double> snap_world = {};  ///< what is nearer is one wall; without it what the grid cannot tell apart
+  std::optional<double> snap_world = {};  ///< faces of regions that are nearer are one wall
   /// Where texture coordinates, materials or groups of the input jump, the result has edges; names of faces, as
   /// materials and groups, end at edges either way. The values themselves go over by transfer_attributes().
   UvSeams uv_seams = UvSeams::keep;

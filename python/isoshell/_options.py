@@ -45,8 +45,8 @@ class Options(TypedDict, total=False):
             of close_gaps are borders of the result [close].
         regions: one mesh of all regions of a mesh, with shared walls: its connected components, its groups or objects,
             whatever its faces enclose, or what has the same value of an attribute of faces.
-        snap: of regions: faces nearer than that, in world units, are one wall; at least two steps of the grid, and at
-            most a 20th of the longest side [two steps of the grid].
+        snap: of regions: faces nearer than that, in world units, are one wall; at least two steps of the grid, at most
+            a 20th of the longest side [two steps of the grid].
         attributes: what a mesh has beside its positions and the result keeps: names separated by commas, such as color,
             uv, normal, material, group [all].
         uv_seams: places where texture coordinates jump: keep: they are edges of the result; ignore: triangles lie

@@ -210,9 +210,8 @@ std::vector<OptionRow> shape_rows() {
        "its faces enclose, or what has the same value of an attribute of faces",
        "", "regions", regions_option(), OnResume::of_run},
       {group, "snap", "W",
-       "of --regions: faces nearer than that, in world units, are one wall; at least two steps of the grid, and at "
-       "most "
-       "a 20th of the longest side",
+       "of --regions: faces nearer than that, in world units, are one wall; at least two steps of the grid, at most a "
+       "20th of the longest side",
        "two steps of the grid", "snap_world", &RemeshOptions::snap_world, OnResume::of_run, kLengths, 0},
       {group, "attributes", "all|none|LIST",
        "what a mesh has beside its positions and the result keeps: names separated by commas, such as color, uv, "

@@ -86,7 +86,7 @@ TEST_CASE("unions: what is nearer than is asked for is joined", "[regions][unit]
 }
 
 TEST_CASE("parts: a thin space between parts belongs to what is beside", "[regions][unit]") {
-  // A box around another one, with a gap of .01 on all sides but the one that they share.
+  // A box in the hollow of another one, with a gap of .01 on all sides.
   const TriangleSoup around = shapes::box({0, 0, 0}, {4, 4, 4}),
                      hollow = shapes::inside_out(shapes::box({1, 1, 1}, {3, 3, 3})),
                      inner = shapes::box({1.01, 1.01, 1.01}, {2.99, 2.99, 2.99});

@@ -28,11 +28,6 @@ bool has_very_many_at_vertex(const FeatureMesh& mesh) {
   return false;
 }
 
-/// Of points of the lattice.
-bool meets_itself(const FeatureMesh& mesh, const LatticeFrame& frame, const Context& context) {
-  return !has_very_many_at_vertex(mesh) && !crossings_of(mesh, frame, context).empty();
-}
-
 /// Parts that were apart by less than a step may share edges.
 bool has_edges_of_many_faces(const SearchedSurface& searched) {
   const std::vector<CurveEdge>& found = searched.creases->curve_edges;
@@ -45,7 +40,7 @@ void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport
   const LatticeFrame& frame = p.surface.frame;
   if (has_very_many_at_vertex(searched.mesh)) return;
   const bool meets = has_edges_of_many_faces(searched) ||
-                     run_with_threads(context, [&] { return meets_itself(searched.mesh, frame, context); });
+                     run_with_threads(context, [&] { return !crossings_of(searched.mesh, frame, context).empty(); });
   check_cancel(context, "features");
   if (!meets) return;
   TriangleSoup soup;
@@ -68,7 +63,7 @@ void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport
     searched.mesh = weld_for_features(whole);
     searched.mesh.rounding_world = rounding_world;
     remove_slivers(searched.mesh, frame, {}, edge_of_strips_world(p), context);
-    p.own_faces_meet = meets_itself(searched.mesh, frame, context);
+    p.own_faces_meet = !has_very_many_at_vertex(searched.mesh) && !crossings_of(searched.mesh, frame, context).empty();
   });
   check_cancel(context, "features");
   searched.creases.reset();

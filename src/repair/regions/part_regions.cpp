@@ -133,12 +133,15 @@ CellLabels numbered_again(CellLabels labels) {
   return labels;
 }
 
-void warn_of_thin_cells(const JoinedCells& joined, double thin_world, std::vector<std::string>& warnings) {
+void join_thin_cells(const Walls& walls, const Cells& cells, const PartOptions& options, CellLabels& labels,
+                     std::vector<std::string>& warnings) {
+  const JoinedCells joined =
+      join_thin_cells(walls, cells, options.thin_world, options.parts == "cells", labels.of_cell);
   if (joined.count == 0) return;
   const WorldPoint& at = *joined.first;
   warnings.push_back(sentence(counted(joined.count, "space"), " between faces, the first near ", at.x, ' ', at.y, ' ',
-                              at.z, joined.count == 1 ? ", is" : ", are", " less than ", thin_world, " thick, and ",
-                              joined.count == 1 ? "belongs" : "belong",
+                              at.z, joined.count == 1 ? ", is" : ", are", " less than ", options.thin_world,
+                              " thick, and ", joined.count == 1 ? "belongs" : "belong",
                               " to what is beside; more --vertices keep thinner ones, or a smaller --snap"));
 }
 
@@ -212,15 +215,13 @@ PartRegions part_regions(const TriangleSoup& soup, const PartOptions& options, C
   PartRegions out;
   if (how == "cells") {
     CellLabels labels = labels_of_cells(cells.count());
-    warn_of_thin_cells(join_thin_cells(walls, cells, options.thin_world, true, labels.of_cell), options.thin_world,
-                       out.warnings);
+    join_thin_cells(walls, cells, options, labels, out.warnings);
     out.walls = kept_walls(walls, cells, numbered_again(std::move(labels)), walls_inside_of_cells(walls, cells));
   } else {
     const Chains chains = find_chains(walls, parts, context);
     const CellParts found = find_parts_of_cells(walls, cells, chains, how == "components");
     CellLabels labels = labels_of_parts(parts, chains, found);
-    warn_of_thin_cells(join_thin_cells(walls, cells, options.thin_world, false, labels.of_cell), options.thin_world,
-                       out.warnings);
+    join_thin_cells(walls, cells, options, labels, out.warnings);
     out.walls = kept_walls(walls, cells, labels, walls_of_sheets(walls, chains));
     warn_of_open_solids(parts, chains, out.warnings);
     warn_of_overlaps(parts, found, out.warnings);
