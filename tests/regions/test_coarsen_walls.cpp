@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "features/walls/coarsen.h"
 #include "features/walls/coarsen_walls.h"
 #include "features/walls/near_walls.h"
 #include "isoshell/io/memory_input.h"
@@ -147,4 +148,33 @@ TEST_CASE("coarsened walls of ugly labels stay closed, keep all pairs of regions
     CHECK(crossings_of(coarse, context) == 0);
     CHECK(coarse.joined.mesh.position.size() <= std::max<int64_t>(50, coarse.before));
   }
+}
+
+TEST_CASE("where walls keep more vertices than were asked for, none of their edges can be collapsed") {
+  constexpr int64_t kFew = 50;
+  TestContext context;
+  int more = 0;
+  for (uint32_t number = 0; number < 200; number += 3) {
+    const LabelVolume volume = random_labels(number);
+    if (pairs_of(volume).empty()) continue;
+    RemeshOptions options;
+    options.vertices = kFew;
+    RemeshReport report;
+    const PreparedSurface p = prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
+    const FeatureMesh& walls = p.walls->mesh;
+    WallMesh mesh(*p.cut, {walls.triangles, walls.source_face, walls.vertices.size()});
+    coarsen(mesh, kFew, context);
+    if (mesh.vertex_count() <= kFew) continue;
+    ++more;
+    INFO("random volume " << number << " of " << mesh.vertex_count() << " vertices");
+    std::vector<uint32_t> targets;
+    MeshChange change;
+    int collapsed = 0;
+    for (uint32_t v = 0; v < mesh.vertices().size(); ++v) {
+      mesh.list_targets(v, targets);
+      for (const uint32_t into : targets) collapsed += mesh.collapse(v, into, change, WallMesh::Shapes::any) ? 1 : 0;
+    }
+    CHECK(collapsed == 0);
+  }
+  CHECK(more > 10);
 }

@@ -211,6 +211,16 @@ void coarsen_in_blocks(WallMesh& mesh, int64_t vertices, double square, Known& k
   }
 }
 
+/// Collapses what costs less than `most_cost`, the cheapest first.
+void coarsen_all(WallMesh& mesh, int64_t vertices, double most_cost, WallMesh::Shapes shapes, double short_square,
+                 Known& known, const Context& context) {
+  if (mesh.vertex_count() <= vertices) return;
+  std::fill(known.least.begin(), known.least.end(), kNever);
+  Coarsening all(mesh, known, shapes, short_square);
+  for (uint32_t v = 0; v < mesh.vertices().size(); ++v) all.add(v);
+  all.run(vertices, most_cost, context);
+}
+
 }  // namespace
 
 void coarsen(WallMesh& mesh, int64_t vertices, const Context& context) {
@@ -221,13 +231,13 @@ void coarsen(WallMesh& mesh, int64_t vertices, const Context& context) {
   // Long edges are collapsed last, and not instead of short ones whose triangles would be bad; the count goes before
   // shapes.
   for (const double squares : kMostSquares)
-    for (const auto shapes : {WallMesh::Shapes::good, WallMesh::Shapes::any}) {
-      std::fill(known.least.begin(), known.least.end(), kNever);
-      Coarsening all(mesh, known, shapes, kShortSquare * square);
-      for (uint32_t v = 0; v < mesh.vertices().size(); ++v) all.add(v);
-      all.run(vertices, squares * square, context);
-      if (mesh.vertex_count() <= vertices) return;
-    }
+    for (const auto shapes : {WallMesh::Shapes::good, WallMesh::Shapes::any})
+      coarsen_all(mesh, vertices, squares * square, shapes, kShortSquare * square, known, context);
+  // What could not be collapsed may be once others were, also far from it.
+  for (int64_t before = 0; mesh.vertex_count() > vertices && mesh.vertex_count() != before;) {
+    before = mesh.vertex_count();
+    coarsen_all(mesh, vertices, kNever, WallMesh::Shapes::any, kShortSquare * square, known, context);
+  }
 }
 
 }  // namespace isoshell
