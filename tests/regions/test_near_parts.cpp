@@ -142,3 +142,23 @@ TEST_CASE("parts: a pin with other facets than its hole shares the wall when it 
   CHECK(contains(message_of(ErrorCode::usage, [&] { remesh(loose, options, context); }),
                  "--snap is 0.5; it may be at most a 20th of the longest side, 0.298858"));
 }
+
+TEST_CASE("parts: where cuts do not end with all that is near made one, less is, and a warning says how much",
+          "[regions][unit]") {
+  constexpr int kBars = 8;
+  TriangleSoup bars;  // each turned by 22.5 degrees, and tilted by .003 rad, more than the one before
+  for (int i = 0; i < kBars; ++i) {
+    const double turn = M_PI * i / kBars, tilt = .003 * i;
+    TriangleSoup bar = shapes::box({-1, -.1, -.1}, {1, .1, .1});
+    for (WorldPoint& p : bar.vertices) {
+      const double y = p.y * std::cos(tilt) - p.z * std::sin(tilt), z = p.y * std::sin(tilt) + p.z * std::cos(tilt);
+      p = {p.x * std::cos(turn) - y * std::sin(turn), p.x * std::sin(turn) + y * std::cos(turn), z};
+    }
+    bars = shapes::together(std::move(bars), bar);
+  }
+  CpuContext context;
+  const PartRegions found = find_part_regions(bars, {"cells", .03, .03}, context);
+  REQUIRE(!found.warnings.empty());
+  CHECK(contains(found.warnings[0], "what is nearer than 0.0225 was made one, and not what is nearer than 0.03"));
+  CHECK(contains(found.warnings[0], "give another --snap"));
+}

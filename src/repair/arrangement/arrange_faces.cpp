@@ -21,9 +21,10 @@ constexpr double kMostReachSteps = 1 << 24;  // a 16th of the longest side; boxe
 constexpr int kNearEdgeRounds = 3, kFullRounds = 8, kMostRounds = 32;
 constexpr size_t kMostContactsOfFace = 16, kMostGrowth = 3, kFewFaces = 4096;
 
-// Of all rounds together: 10 to 40 a triangle where large parts touch or overlap, and some 100,000 in soups of a few
-// thousand triangles. Soups in one plane would take thousands of times that.
-constexpr int64_t kLeastWork = 1 << 22, kWorkOfTriangle = 1 << 10;
+// Of all reaches and rounds together, half of what is left for each reach: a round takes 10 to 40 a triangle where
+// large parts touch or overlap, and a house with a reach of 1.5 centimetres millions. Soups in one plane would take
+// thousands of times that.
+constexpr int64_t kLeastWork = 1 << 25, kWorkOfTriangle = 1 << 10;
 
 LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, const StepFrame& frame) {
   LatticeFaces faces;
@@ -121,7 +122,7 @@ ArrangedFaces result_of(LatticeFaces faces, const TriangleSoup& soup, const Weld
   return result;
 }
 
-/// None, and a place where faces cross, when rounds do not come to an end, or take more than the work that is left.
+/// None, and a place where faces cross, when rounds do not come to an end, or take more work than they may.
 std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, StepPoint& failed_at,
                                     const Context& context) {
   size_t most_faces = 0;
@@ -176,12 +177,18 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
   unsettle_crossing(whole, groups.is_checked, context);
   int64_t work_left = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
   for (const double reach_steps : reaches_from(whole.reach_steps)) {
-    if (work_left < 0) return {};
     LatticeFaces faces = whole;
     faces.reach_steps = reach_steps;
     StepPoint at{0, 0, 0};
-    std::optional<LatticeFaces> cut = cut_all(std::move(faces), work_left, at, context);
-    if (cut) return result_of(std::move(*cut), soup, welded, box);
+    const int64_t for_others = work_left / 2;
+    int64_t left = work_left - for_others;
+    std::optional<LatticeFaces> cut = cut_all(std::move(faces), left, at, context);
+    if (cut) {
+      ArrangedFaces result = result_of(std::move(*cut), soup, welded, box);
+      result.near_world = groups.near_world * reach_steps / whole.reach_steps;
+      return result;
+    }
+    work_left = for_others + std::max<int64_t>(0, left);
     failed_at = frame.to_world(at);
   }
   return {};

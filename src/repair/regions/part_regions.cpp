@@ -194,15 +194,22 @@ std::vector<uint8_t> walls_of_sheets(const Walls& walls, const Chains& chains) {
 }
 
 /// What lies on or passes through another is cut there.
-ArrangedFaces arranged(const TriangleSoup& soup, double near_world, Context& context) {
+ArrangedFaces arranged(const TriangleSoup& soup, double near_world, std::vector<std::string>& warnings,
+                       Context& context) {
   WorldPoint at{0, 0, 0};
   std::optional<ArrangedFaces> faces = arrange_faces(soup, at, context, {0, {}, {}, near_world});
   if (!faces)
-    throw Error(ErrorCode::usage, "regions",
-                sentence("the faces cannot be cut along each other near ", at.x, ' ', at.y, ' ', at.z,
-                         ", where very many of them cross at small angles; part them there"));
+    throw Error(
+        ErrorCode::usage, "regions",
+        sentence("the faces cannot be cut along each other near ", at.x, ' ', at.y, ' ', at.z,
+                 ", where very many of them cross at small angles; part them there, or make near ones one (--snap)"));
   if (faces->face.empty())
     throw Error(ErrorCode::nothing_to_mesh, "regions", "no face has an area: there is nothing to part regions");
+  if (faces->near_world < near_world)
+    warnings.push_back(sentence("what is nearer than ", faces->near_world,
+                                " was made one, and not what is nearer than ", near_world, ": with that faces near ",
+                                at.x, ' ', at.y, ' ', at.z,
+                                " would be cut without end; part them there, or give another --snap"));
   return std::move(*faces);
 }
 
@@ -210,9 +217,9 @@ PartRegions part_regions(const TriangleSoup& soup, const PartOptions& options, C
   const std::string& how = options.parts;
   Parts parts;
   if (how != "cells") parts = how == "components" ? find_components(soup, context) : find_parts_by(soup, how);
-  const Walls walls = find_walls(arranged(soup, options.near_world, context));
-  const Cells cells = find_cells(walls, context);
   PartRegions out;
+  const Walls walls = find_walls(arranged(soup, options.near_world, out.warnings, context));
+  const Cells cells = find_cells(walls, context);
   if (how == "cells") {
     CellLabels labels = labels_of_cells(cells.count());
     join_thin_cells(walls, cells, options, labels, out.warnings);
