@@ -131,8 +131,9 @@ class Volume:
     """Values on a regular lattice: a CT, a segmentation, a simulation.
 
     The surface is where the values, interpolated, are `iso`, which remesh() takes; of booleans the border of what is
-    True. Without `iso` the values are distances: negative inside, or unsigned. As a sizing field it holds edge lengths,
-    and NaN where it says nothing.
+    True. Without `iso` the values are distances: negative inside, or unsigned. NaN, and masked values, are not known:
+    beside them the surface is open, and holes are closed or, by boundary="keep", kept. As a sizing field it holds edge
+    lengths, and NaN where it says nothing.
 
     Args:
         values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
@@ -141,13 +142,18 @@ class Volume:
         origin: where values[0, 0, 0] stands, world units.
         velocities: (X, Y, Z, 3) world units a frame, used as float32: where the surface goes until the next frame of
             remesh_sequence(); NaN where nothing is known.
+        sides: where a surface ends that reaches the sides of the array. "sample": at the outermost values, with flat
+            faces; "cell": the same half a voxel farther out, as for values in the middle of voxels; "open": at the
+            outermost values, with a border, which boundary="keep" keeps. None is "cell" for booleans, else "sample".
     """
 
-    def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None) -> None:
+    def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None,
+                 sides: Optional[str] = None) -> None:
         self.values = values
         self.spacing = spacing
         self.origin = origin
         self.velocities = velocities
+        self.sides = sides
 
     def __repr__(self) -> str:
         return f"<isoshell.Volume: {lattice_text(self.values)}, spacing {self.spacing}, origin {self.origin}>"

@@ -148,7 +148,8 @@ def _source_of(given: Any) -> Source:
     if isinstance(given, Points):
         return Source.points(*_points_of(given))
     if isinstance(given, Volume):
-        return Source.volume(*_lattice_of("volume", given))
+        sides = ("cell" if is_true_or_false(given) else "sample") if given.sides is None else given.sides
+        return Source.volume(*_lattice_of("volume", given), sides)
     if isinstance(given, Labels):
         return Source.labels(values_of(given), lattice_of(given))
     if isinstance(given, (tuple, list)) and len(given) == 2:
@@ -348,13 +349,11 @@ def _lattice_of(argument: str, volume: Volume,
 
 
 def _values_of(argument: str, values: Any) -> np.ndarray[Any, Any]:
-    """Of a volume: where a mask of what is inside has no value, that is outside."""
+    """Of a volume: where a mask of what is inside has no value, that is outside; others are not known there."""
     import numpy as np
 
     array, mask = masked_array_of(argument, values)
-    if mask is None:
-        return array.astype(np.float32, copy=False)
-    if array.dtype.kind == "b":
+    if mask is not None and array.dtype.kind == "b":
         return np.asarray(array & ~mask, np.float32)
-    raise Error(f"{argument}{first_place(mask)} is masked, and which side of the surface it is on is not known; fill it "
-                "with a value of the outside: array.filled(value)")
+    known = array.astype(np.float32, copy=False)
+    return known if mask is None else np.where(mask, np.float32(np.nan), known)

@@ -146,6 +146,41 @@ def test_a_body_that_reaches_the_end_of_the_array_is_closed_there():
     assert half.report["topology"]["components"] == 1
 
 
+def volume_of(result):
+    a, b, c = (result.vertices[result.faces[:, i]] for i in range(3))
+    return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+
+
+def test_a_field_that_reaches_the_sides_of_its_array_ends_there_in_flat_faces_with_creases():
+    at = np.linspace(0, 4 * np.pi, 40)
+    x, y, z = np.meshgrid(at, at, at, indexing="ij")
+    gyroid = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)  # half of space is inside
+    for sides, longer in (("sample", 0), ("cell", at[1])):
+        made = isoshell.remesh(isoshell.Volume(gyroid, at[1], sides=sides), iso=0, vertices=6000)
+        assert volume_of(made) == pytest.approx((4 * np.pi + longer) ** 3 / 2, rel=0.005)
+        assert np.allclose([made.vertices.min(axis=0), made.vertices.max(axis=0)],
+                           np.outer([-longer / 2, 4 * np.pi + longer / 2], [1, 1, 1]), atol=0.03 * at[1])
+        if sides == "sample":
+            assert made.report["quality"]["theta_min_deg"] >= 30
+
+
+def test_a_surface_that_reaches_the_sides_of_its_array_may_stay_open_there():
+    x, _, z = np.meshgrid(*[np.arange(20.0)] * 3, indexing="ij")
+    terrain = isoshell.Volume(z - 8.3 - np.sin(x / 3), sides="open")
+    made = isoshell.remesh(terrain, boundary="keep", **SMALL)
+    assert made.report["topology"]["boundary_loops"] == 1
+    assert made.vertices[:, 2].min() > 7
+
+
+def test_values_that_are_no_numbers_leave_the_surface_open_beside_them():
+    values, spacing, origin = ball_values()
+    values[:, :, 12:] = np.nan
+    with pytest.warns(isoshell.RunWarning, match="are no numbers, and its surface is open in"):
+        half = isoshell.remesh(isoshell.Volume(values, spacing, origin), boundary="keep", **SMALL)
+    assert half.report["topology"]["boundary_loops"] == 1
+    assert half.vertices[:, 2].max() <= origin[2] + 11 * spacing[2] + 1e-3
+
+
 @pytest.mark.parametrize("volume, name, code", [
     (isoshell.Volume(np.zeros((3, 3))), "volume", ErrorCode.USAGE),
     (isoshell.Volume(np.zeros((0, 3, 3))), "volume", ErrorCode.USAGE),
@@ -156,8 +191,7 @@ def test_a_body_that_reaches_the_end_of_the_array_is_closed_there():
     (isoshell.Volume(np.zeros((3, 3, 3)), origin=(0, np.nan, 0)), "origin", ErrorCode.USAGE),
     (isoshell.Volume(np.zeros((3, 3, 3))), "volume", ErrorCode.NOTHING_TO_MESH),
     (isoshell.Volume(np.arange(27.0).reshape(3, 3, 3) ** 2), "iso", ErrorCode.USAGE),
-    (isoshell.Volume(np.where(np.arange(27) == 14, np.nan, 1).reshape(3, 3, 3)), r"value \(1, 1, 2\) is nan",
-     ErrorCode.UNREADABLE_INPUT),
+    (isoshell.Volume(np.zeros((3, 3, 3)), sides="left"), 'sides must be "sample", "cell" or "open"', ErrorCode.USAGE),
     (isoshell.Volume(np.where(np.arange(27) == 14, np.inf, 1).reshape(3, 3, 3)), r"value \(1, 1, 2\) is inf",
      ErrorCode.UNREADABLE_INPUT),
 ])

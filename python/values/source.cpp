@@ -35,7 +35,7 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-[[noreturn]] void refuse(const char* message) { throw Error(ErrorCode::usage, "arguments", message); }
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "arguments", message); }
 
 /// Of what is in memory and no volume of labels.
 void refuse_label_options(const RunRequest& request) {
@@ -128,13 +128,20 @@ DenseVolume dense_volume(const char* argument, const AnyArray& values, const Tri
   return lattice(floats_of(argument, values, 3), values, spacing, origin);
 }
 
-Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin) {
+VolumeSides sides_named(const std::string& name) {
+  if (name == "sample") return VolumeSides::sample;
+  if (name == "cell") return VolumeSides::cell;
+  if (name == "open") return VolumeSides::open;
+  refuse("sides must be \"sample\", \"cell\" or \"open\", and is \"" + name + "\"");
+}
+
+Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin, const std::string& sides) {
   const DenseVolume v = dense_volume("volume", values, spacing, origin);
   return {"",
-          [v](const RunRequest& request, const Context& context) {
+          [v, at_sides = sides_named(sides)](const RunRequest& request, const Context& context) {
             refuse_label_options(request);
             const VolumeReadOptions options{"", request.input.iso, context.memory_limit_bytes,
-                                            volume_creases(request.options.values.features)};
+                                            volume_creases(request.options.values.features), at_sides};
             return input_of(v, "volume", options, request.tell);
           },
           nb::cast(values),
@@ -237,9 +244,9 @@ void bind_source(nb::module_& m) {
                           "Source"))
       .def_static("points", points, nb::arg("positions"), nb::arg("normals").none(),
                   nb::sig("def points(positions: typing.Any, normals: typing.Any) -> Source"))
-      .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"),
+      .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"), nb::arg("sides"),
                   nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
-                          "float, float]) -> Source"))
+                          "float, float], sides: str) -> Source"))
       .def_static("labels", labels, nb::arg("values"), nb::arg("lattice"),
                   nb::sig("def labels(values: typing.Any, lattice: LabelLattice) -> Source"))
       .def("set_velocities_of_vertices", set_velocities_of_vertices, nb::arg("velocities"), nb::arg("vertices"),

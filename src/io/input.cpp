@@ -144,6 +144,15 @@ class Reader {
          << volume.voxel_size_world << ", " << counted(volume.blocks, "block")
          << (volume.kind == VolumeKind::at_value ? "" : ", unsigned distances");
     note(text.str());
+    if (volume.open_cells > 0) {
+      const WorldPoint& at = volume.first_open_world;
+      std::ostringstream open;
+      open << counted(volume.unknown_values, "value")
+           << (volume.unknown_values == 1 ? " is no number" : " are no numbers") << ", and its surface is open in "
+           << counted(volume.open_cells, "cell") << " beside such, the first near " << at.x << ' ' << at.y << ' '
+           << at.z << ": holes there are closed, or kept by --boundary keep";
+      warn(open.str());
+    }
     if (volume.kind == VolumeKind::open_unsigned_distance)
       warn(
           "the zero set of its unsigned distances encloses nothing; the closed crust around it is meshed, 0.9 voxels "

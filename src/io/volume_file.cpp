@@ -34,6 +34,14 @@ constexpr double kLeastEnclosing = 0.5;  // of the zero set: with less it is an 
   throw Error(ErrorCode::usage, "read", text.str());
 }
 
+[[noreturn]] void refuse_unknown(const ScalarField& field, Voxel v) {
+  throw Error(ErrorCode::unreadable_input, "read",
+              field.title() + ", voxel (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
+                  std::to_string(v.z) +
+                  "): its value is not a number, and unsigned distances do not tell which side of "
+                  "the surface it is on; give it a value, or signs to the others");
+}
+
 /// Whether the class leaves open what the values are, or says that they have no sign.
 bool may_be_unsigned(const std::string& grid_class) {
   return grid_class == kUnknown || grid_class.find("unsigned") != std::string::npos;
@@ -49,6 +57,7 @@ TriangleSoup surface_of_unsigned(const ScalarField& field, const VolumeReadOptio
     refuse_without_iso(field, range,
                        ". Its values look like unsigned distances, but its background of 0 puts a surface at the end "
                        "of the grid: save it with a background above its largest value");
+  if (range.unknown) refuse_unknown(field, *range.unknown);
   info.kind = VolumeKind::unsigned_distance;
   const SignedSides sides = find_sides(field, kind.voxel, options.memory_limit_bytes);
   if (sides.enclosing_part >= kLeastEnclosing)
@@ -68,7 +77,12 @@ TriangleSoup surface_of(const ScalarField& field, const VolumeReadOptions& optio
     if (range.low >= 0 && may_be_unsigned(field.grid_class)) return surface_of_unsigned(field, options, info);
     if (field.grid_class != kUnknown || range.low >= 0 || field.background <= 0) refuse_without_iso(field, range, "");
   }
-  return extract_iso_surface(field, info.iso, options.memory_limit_bytes, options.creases);
+  UnknownValues unknown;
+  TriangleSoup soup = extract_iso_surface(field, info.iso, options.memory_limit_bytes, options.creases, &unknown);
+  info.unknown_values = unknown.values;
+  info.open_cells = unknown.cells;
+  info.first_open_world = unknown.first_world;
+  return soup;
 }
 
 double voxel_size(const AffineMap& map) {
@@ -115,7 +129,7 @@ TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& opti
 
 TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info) {
-  return described_surface_of(DenseField(volume, name, options.iso), options, info);
+  return described_surface_of(DenseField(volume, name, options.iso, options.sides), options, info);
 }
 
 }  // namespace isoshell

@@ -107,15 +107,21 @@ TEST_CASE("iso surface: a solid too large for the memory limit is refused before
   CHECK(error_of([&] { extract_iso_surface(field, 0.5, 16 << 20); }).code() == ErrorCode::out_of_memory);
 }
 
-TEST_CASE("iso surface: what is no number is refused by its place, and what has no surface by its values",
-          "[volume][unit]") {
-  MadeField broken(
-      0, 8,
-      [](Voxel v) {
-        return v == Voxel{1, 2, 3} ? NAN : -1.f;
-      },
-      1);
-  CHECK(contains(refusal(broken, ErrorCode::unreadable_input), "voxel (1, 2, 3)"));
+TEST_CASE("iso surface: it is open beside values that are no numbers", "[volume][unit]") {
+  const auto value = [](Voxel v) { return v == Voxel{0, 3, 4} ? NAN : -1.f; };
+  MadeField broken(0, 8, value, 1);
+  UnknownValues unknown;
+  const TriangleSoup soup = extract_iso_surface(broken, 0, 0, VolumeCreases::none, &unknown);
+  CHECK(unknown.values == 1);
+  CHECK(unknown.cells == 8);
+  const WorldPoint& at = unknown.first_world;
+  CHECK((at.x == -.5 && at.y == 2.5 && at.z == 3.5));
+  CHECK(!is_closed_2_manifold_by_edges(soup));
+  broken.background = -1;  // then all that is known is inside
+  CHECK(contains(refusal(broken, ErrorCode::nothing_to_mesh), "all its values are -1"));
+}
+
+TEST_CASE("iso surface: what has no surface is refused by its values", "[volume][unit]") {
   MadeField flat(
       0, 8, [](Voxel) { return 2.f; }, 1);
   CHECK(contains(refusal(flat, ErrorCode::nothing_to_mesh), "its values are 1 to 2"));

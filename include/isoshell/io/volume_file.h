@@ -16,6 +16,13 @@ enum class VolumeCreases {
   all,
 };
 
+/// Where the surface of an array's values ends that reaches the sides of the array.
+enum class VolumeSides {
+  sample,  ///< at the outermost values, with flat faces
+  cell,    ///< half a voxel farther out, with flat faces: values stand in the middle of voxels
+  open,    ///< at the outermost values, with a border
+};
+
 struct VolumeReadOptions {
   /// Name of the grid, NAME[1] for the second one of that name, or NAME[2] where a grid is called NAME[1]: what a grid
   /// is called comes first. Empty takes the only level set, or the only grid that can be meshed.
@@ -24,6 +31,7 @@ struct VolumeReadOptions {
                                    ///< an error in a fog volume
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
   VolumeCreases creases = VolumeCreases::none;
+  VolumeSides sides = VolumeSides::sample;
 };
 
 /// What the values of a grid were taken for.
@@ -40,17 +48,21 @@ struct VolumeInfo {
   double iso = 0;
   double voxel_size_world = 0;  ///< longest edge of a voxel
   int64_t blocks = 0;           ///< of 8^3 voxels that hold values of their own
+  int64_t unknown_values = 0;   ///< that are not numbers, near the surface
+  int64_t open_cells = 0;       ///< in which the surface is open beside these
+  WorldPoint first_open_world{0, 0, 0};
 };
 
 /// Reads one grid and extracts the surface on which its trilinear field has the value `iso`: closed, 2-manifold, with
 /// vertices where lattice edges cross it, or on its creases where these are kept, oriented towards the side on which
-/// the background lies. Without `iso` a grid of class unknown, or whose class says that it is unsigned, with no
-/// negative values that rise by one voxel's length a voxel holds unsigned distances. They get the signs of the two
-/// sides of their zero set first, so that it is one skin, closed over holes and with the hollows of nested surfaces.
-/// Every count and offset in the file is held to its bytes before anything is allocated by it. Throws: unreadable_input
-/// for a damaged file, a value that is not a number, and frustum transforms; nothing_to_mesh for a grid without the
-/// surface or of a type that has none (points, booleans, vectors), naming the grids there are; usage when the grid or
-/// its iso value must be named; out_of_memory over the limit.
+/// the background lies. Beside values that are no numbers the surface is open. Without `iso` a grid of class unknown,
+/// or whose class says that it is unsigned, with no negative values that rise by one voxel's length a voxel holds
+/// unsigned distances. They get the signs of the two sides of their zero set first, so that it is one skin, closed over
+/// holes and with the hollows of nested surfaces. Every count and offset in the file is held to its bytes before
+/// anything is allocated by it. Throws: unreadable_input for a damaged file, an unsigned distance that is not a number,
+/// and frustum transforms; nothing_to_mesh for a grid without the surface or of a type that has none (points, booleans,
+/// vectors), naming the grids there are; usage when the grid or its iso value must be named; out_of_memory over the
+/// limit.
 TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info);
 
 }  // namespace isoshell

@@ -91,10 +91,18 @@ def test_a_masked_volume_of_true_and_false_may_have_velocities():
         assert moved(mask, partly) == known
 
 
-def test_a_masked_value_of_a_volume_is_refused_by_its_place():
+def test_a_masked_value_of_a_volume_is_one_that_is_not_known():
     values, spacing, origin = ball_values()
-    with pytest.raises(isoshell.Error, match=r"volume\[2, 3, 4\] is masked.*filled"):
-        isoshell.remesh(isoshell.Volume(masked(values, (2, 3, 4)), spacing, origin), **SMALL)
+    hidden = np.zeros(values.shape, bool)
+    hidden[:, :, : values.shape[2] // 3] = True
+
+    def made(some):
+        with pytest.warns(isoshell.RunWarning, match="are no numbers, and its surface is open in"):
+            return isoshell.remesh(isoshell.Volume(some, spacing, origin), boundary="keep", **SMALL)
+
+    result = made(np.ma.array(values, mask=hidden))
+    assert result.report["topology"]["boundary_loops"] == 1
+    assert result.digest == made(np.where(hidden, np.nan, values)).digest
 
 
 def test_a_masked_label_is_background():

@@ -154,6 +154,8 @@ std::vector<CreaseVertex> Creases::find_vertices(const ScalarField& field, Insid
   float window[kWindow * kWindow * kWindow];
   read_cell_window(field, blocks_[block], window);
   each_cut_cell(window, inside, [&](int offset, const float*, int corners_inside) {
+    const Voxel cell = plus(blocks_[block], offset >> 6, offset >> 3 & 7, offset & 7);
+    if (field.sides && !field.sides->hold_cell(cell)) return;
     for (int l = 0; l < kIsoCases.of[corners_inside].loops; ++l) {
       CreaseVertex v{uint16_t(offset), uint8_t(l), uint8_t(corners_inside), CreaseVertex::best, {}, {}};
       if (place_vertex(block, v)) found.push_back(v);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/parallel_ranges.h"
+#include "geometry/world_vector.h"
 #include "isoshell/error.h"
 
 namespace isoshell {
@@ -15,22 +16,30 @@ int32_t blocks_along(int64_t size) { return int32_t((size + kFieldBlock - 1) / k
 /// Of the part of a block that lies in the array.
 struct BlockRange {
   float low = INFINITY, high = -INFINITY;
-  bool finite = true, whole = false;
+  bool has_infinite = false, has_nan = false, whole = false;
 
-  bool is_tile() const { return whole && low == high; }
+  bool is_tile() const { return whole && low == high && !has_nan; }
 };
 
 }  // namespace
 
-DenseField::DenseField(const DenseVolume& volume, const std::string& volume_name, const std::optional<double>& iso)
-    : volume_(volume) {
+DenseField::DenseField(const DenseVolume& volume, const std::string& volume_name, const std::optional<double>& iso,
+                       VolumeSides at_sides)
+    : volume_(volume), padding_(at_sides == VolumeSides::cell ? 1 : 0) {
   file = volume_name;
   name = "values";
   grid_class = "unknown";
+  for (int a = 0; a < 3; ++a) size_[a] = volume.size[a] + 2 * padding_;
   check(volume_name);
-  to_world = lattice_map(volume.spacing_world, volume.origin_world);
+  const WorldPoint &spacing = volume.spacing_world, &origin = volume.origin_world;
+  to_world = lattice_map(spacing, origin - double(padding_) * spacing);
+  sides = FieldSides{{0, 0, 0},
+                     {int32_t(size_[0]) - 1, int32_t(size_[1]) - 1, int32_t(size_[2]) - 1},
+                     at_sides != VolumeSides::open,
+                     at_sides == VolumeSides::cell};
   double low = INFINITY, high = -INFINITY;
   split_into_blocks(low, high);
+  if (!(low <= high)) refuse_unknown();
   background = !iso || is_mostly_above(*iso) ? high : low;
   drop_background();
 }
@@ -41,6 +50,8 @@ void DenseField::check(const std::string& volume_name) const {
     if (size < 1 || size > kFieldReach)
       refuse(" has " + std::to_string(size) + " values along an axis; it must have 1 to " +
              std::to_string(kFieldReach));
+  for (const int64_t size : size_)
+    if (size < 2) refuse(" has 1 value along an axis, where both sides of the array are; give sides=\"cell\"");
   const WorldPoint &s = volume_.spacing_world, &o = volume_.origin_world;
   for (const double spacing : {s.x, s.y, s.z})
     if (!(spacing > 0) || !std::isfinite(spacing)) refuse(": its spacing must be above 0 along every axis");
@@ -49,23 +60,23 @@ void DenseField::check(const std::string& volume_name) const {
 }
 
 void DenseField::split_into_blocks(double& low, double& high) {
-  const int32_t nx = blocks_along(volume_.size[0]), ny = blocks_along(volume_.size[1]),
-                nz = blocks_along(volume_.size[2]);
+  const int32_t nx = blocks_along(size_[0]), ny = blocks_along(size_[1]), nz = blocks_along(size_[2]);
   const auto origin = [&](int64_t b) -> Voxel {
     return {int32_t(b / nz / ny) * kFieldBlock, int32_t(b / nz % ny) * kFieldBlock, int32_t(b % nz) * kFieldBlock};
   };
   std::vector<BlockRange> ranges(size_t(int64_t(nx) * ny * nz));
   for_each_index(int64_t(0), int64_t(ranges.size()), [&](int64_t b) {
     const Voxel o = origin(b);
-    const int64_t end[3] = {std::min<int64_t>(o.x + kFieldBlock, volume_.size[0]),
-                            std::min<int64_t>(o.y + kFieldBlock, volume_.size[1]),
-                            std::min<int64_t>(o.z + kFieldBlock, volume_.size[2])};
+    const int64_t end[3] = {std::min<int64_t>(o.x + kFieldBlock, size_[0]),
+                            std::min<int64_t>(o.y + kFieldBlock, size_[1]),
+                            std::min<int64_t>(o.z + kFieldBlock, size_[2])};
     BlockRange range;
     for (int64_t x = o.x; x < end[0]; ++x)
       for (int64_t y = o.y; y < end[1]; ++y)
         for (int64_t z = o.z; z < end[2]; ++z) {
           const float value = at(x, y, z);
-          range.finite = range.finite && std::isfinite(value);
+          range.has_infinite |= std::isinf(value);
+          range.has_nan |= std::isnan(value);
           range.low = std::min(range.low, value);
           range.high = std::max(range.high, value);
         }
@@ -75,7 +86,7 @@ void DenseField::split_into_blocks(double& low, double& high) {
   for (size_t b = 0; b < ranges.size(); ++b) {
     const BlockRange& range = ranges[b];
     const Voxel o = origin(int64_t(b));
-    if (!range.finite) refuse_value(o);
+    if (range.has_infinite) refuse_value(o);
     low = std::min<double>(low, range.low);
     high = std::max<double>(high, range.high);
     if (range.is_tile())
@@ -94,9 +105,9 @@ bool DenseField::is_mostly_above(double iso) const {
   int64_t above = 0, count = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (const int64_t end : {int64_t(0), volume_.size[axis] - 1})
-      for (int64_t i = 0; i < volume_.size[u]; ++i)
-        for (int64_t j = 0; j < volume_.size[v]; ++j) {
+    for (const int64_t end : {int64_t(0), size_[axis] - 1})
+      for (int64_t i = 0; i < size_[u]; ++i)
+        for (int64_t j = 0; j < size_[v]; ++j) {
           int64_t place[3];
           place[axis] = end;
           place[u] = i;
@@ -108,25 +119,49 @@ bool DenseField::is_mostly_above(double iso) const {
   return 2 * above > count;
 }
 
+void DenseField::refuse_unknown() const {
+  throw Error(ErrorCode::nothing_to_mesh, "read", file + ": none of its values is a number");
+}
+
 void DenseField::refuse_value(Voxel block) const {
   std::ostringstream text;
   for (int i = 0; i < kFieldBlock * kFieldBlock * kFieldBlock; ++i) {
-    const int64_t x = block.x + (i >> 6), y = block.y + (i >> 3 & 7), z = block.z + (i & 7);
-    if (x >= volume_.size[0] || y >= volume_.size[1] || z >= volume_.size[2] || std::isfinite(at(x, y, z))) continue;
-    text << file << ": value (" << x << ", " << y << ", " << z << ") is " << at(x, y, z) << "; values must be finite";
+    const Voxel v{block.x + (i >> 6), block.y + (i >> 3 & 7), block.z + (i & 7)};
+    if (!sides->hold(v) || !std::isinf(at(v.x, v.y, v.z))) continue;
+    const Voxel in = in_array(v);
+    text << file << ": value (" << in.x << ", " << in.y << ", " << in.z << ") is " << at(v.x, v.y, v.z)
+         << "; values must be finite, or NaN where nothing is known";
     break;
   }
   throw Error(ErrorCode::unreadable_input, "read", text.str());
+}
+
+std::unique_ptr<ScalarField> DenseField::continued() const {
+  auto field = std::make_unique<DenseField>(*this);
+  field->goes_on_ = true;
+  return field;
+}
+
+/// The value of the nearest point of the lattice, and as much more as that has than the point as far inside of it.
+float DenseField::beyond(const int64_t point[3]) const {
+  int64_t nearest[3], mirrored[3];
+  for (int a = 0; a < 3; ++a) {
+    nearest[a] = std::clamp<int64_t>(point[a], 0, size_[a] - 1);
+    mirrored[a] = std::clamp<int64_t>(2 * nearest[a] - point[a], 0, size_[a] - 1);
+  }
+  return 2 * at(nearest[0], nearest[1], nearest[2]) - at(mirrored[0], mirrored[1], mirrored[2]);
 }
 
 void DenseField::copy(Voxel origin, const int size[3], float* to) const {
   for (int x = 0; x < size[0]; ++x)
     for (int y = 0; y < size[1]; ++y)
       for (int z = 0; z < size[2]; ++z) {
-        const int64_t i = int64_t(origin.x) + x, j = int64_t(origin.y) + y, k = int64_t(origin.z) + z;
-        const bool held =
-            i >= 0 && j >= 0 && k >= 0 && i < volume_.size[0] && j < volume_.size[1] && k < volume_.size[2];
-        to[x * kWindowStride[0] + y * kWindowStride[1] + z] = held ? at(i, j, k) : float(background);
+        const int64_t p[3] = {int64_t(origin.x) + x, int64_t(origin.y) + y, int64_t(origin.z) + z};
+        bool is_held = true;
+        for (int a = 0; a < 3; ++a) is_held = is_held && p[a] >= 0 && p[a] < size_[a];
+        to[x * kWindowStride[0] + y * kWindowStride[1] + z] = is_held    ? at(p[0], p[1], p[2])
+                                                              : goes_on_ ? beyond(p)
+                                                                         : float(background);
       }
 }
 

@@ -1,6 +1,8 @@
 // Values on a regular lattice in memory as a field.
 #pragma once
 
+#include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,24 +15,36 @@ namespace isoshell {
 class DenseField : public ScalarField {
  public:
   /// Cost: one pass over the values. Throws: as surface_of_volume does for what is no volume.
-  DenseField(const DenseVolume& volume, const std::string& volume_name, const std::optional<double>& iso);
+  DenseField(const DenseVolume& volume, const std::string& volume_name, const std::optional<double>& iso,
+             VolumeSides sides);
 
   std::vector<Voxel> blocks() const override { return blocks_; }
   std::vector<FieldTile> tiles() const override { return tiles_; }
   void copy(Voxel origin, const int size[3], float* to) const override;
+  std::unique_ptr<ScalarField> continued() const override;
 
  private:
+  /// Of a lattice point; those around the array have the value of the nearest one in it.
   float at(int64_t x, int64_t y, int64_t z) const {
-    return volume_.values[x * volume_.stride[0] + y * volume_.stride[1] + z * volume_.stride[2]];
+    const auto in_array = [&](int64_t i, int axis) {
+      return std::clamp<int64_t>(i - padding_, 0, volume_.size[axis] - 1) * volume_.stride[axis];
+    };
+    return volume_.values[in_array(x, 0) + in_array(y, 1) + in_array(z, 2)];
   }
+  float beyond(const int64_t point[3]) const;
+  Voxel in_array(Voxel v) const { return {v.x - padding_, v.y - padding_, v.z - padding_}; }
   void check(const std::string& volume_name) const;
   void split_into_blocks(double& low, double& high);
   void drop_background();
   /// Whether most values at the faces of the array are above `iso`.
   bool is_mostly_above(double iso) const;
+  [[noreturn]] void refuse_unknown() const;
   [[noreturn]] void refuse_value(Voxel block) const;
 
   DenseVolume volume_;
+  int32_t padding_;       ///< lattice points around the array
+  int64_t size_[3];       ///< with these
+  bool goes_on_ = false;  ///< beyond its sides
   std::vector<Voxel> blocks_;
   std::vector<FieldTile> tiles_;
 };

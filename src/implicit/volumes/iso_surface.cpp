@@ -10,9 +10,11 @@
 
 #include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
+#include "implicit/volumes/cell_blocks.h"
 #include "implicit/volumes/crease_intersections.h"
 #include "implicit/volumes/crease_vertices.h"
 #include "implicit/volumes/field_sharpness.h"
+#include "implicit/volumes/make_one.h"
 #include "implicit/volumes/sharpened_field.h"
 #include "implicit/volumes/tile_borders.h"
 #include "io/faces/face_collector.h"
@@ -31,21 +33,6 @@ void sort_unique(std::vector<Voxel>& voxels) {
   voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
 }
 
-/// What a block of cells owns: lattice edges that begin in it, by axis and corner, and the middles of patches.
-struct CellBlock {
-  uint64_t cut[3][8] = {};
-  uint32_t cuts = 0, middles = 0, triangles = 0;
-  int64_t first_vertex = 0, first_triangle = 0;
-
-  /// Which of the block's vertices lies on an edge.
-  uint32_t rank(int axis, int offset) const {
-    uint32_t count = 0;
-    for (int a = 0; a <= axis; ++a)
-      for (int w = 0; w < (a < axis ? 8 : offset >> 6); ++w) count += uint32_t(popcount64(cut[a][w]));
-    return count + uint32_t(popcount64(cut[axis][offset >> 6] & ((uint64_t(1) << (offset & 63)) - 1)));
-  }
-};
-
 class IsoSurface {
  public:
   IsoSurface(const ScalarField& field, double iso, int64_t memory_limit_bytes, VolumeCreases creases)
@@ -54,28 +41,37 @@ class IsoSurface {
         memory_limit_bytes_(memory_limit_bytes > 0 ? memory_limit_bytes : INT64_MAX),
         inside_{iso, field.background == iso ? field.grid_class == "level set" : field.background > iso} {}
 
-  TriangleSoup extract() {
+  TriangleSoup extract(UnknownValues& unknown) {
     list_cell_blocks();
+    const std::unique_ptr<ScalarField> continued = field_.continued();
+    const ScalarField& sloping = continued ? *continued : field_;
     // Distances are not those of index coordinates where voxels are no cubes.
-    if (wanted_ != VolumeCreases::none && cube_edge(field_.to_world) > 0) rise_ = usual_rise(field_, inside_, origin_);
+    if (wanted_ != VolumeCreases::none && cube_edge(field_.to_world) > 0) rise_ = usual_rise(sloping, inside_, origin_);
     count();
-    if (rise_ > 0 && (wanted_ == VolumeCreases::all || is_sharp(bent_))) {
+    unknown = unknown_values();
+    if (rise_ > 0 && unknown.cells == 0 && (wanted_ == VolumeCreases::all || is_sharp(bent_))) {
       inside_.margin = kMargin * rise_;
-      sharpened_.emplace(field_, inside_, rise_, origin_);
+      sharpened_.emplace(sloping, inside_, rise_, origin_);
       creases_.emplace(*sharpened_, inside_, rise_, origin_);
       count();
     }
     TriangleSoup soup = write();
-    if (!creases_) return soup;
+    if (creases_) take_intersecting_back(soup);
+    const auto same = same_at_sides(field_, origin_, cell_);
+    const bool is_open = unknown.cells > 0 || (field_.sides && !field_.sides->are_closed);
+    if (is_open || !same.empty()) make_one(soup, same);
+    return soup;
+  }
+
+ private:
+  void take_intersecting_back(TriangleSoup& soup) {
     for (std::optional<std::vector<Voxel>> moved; take_intersecting_back(soup, moved);) {
       count();
       soup = write();
     }
     for_each_index(size_t(0), soup.vertices.size(), [&](size_t v) { soup.vertices[v] = mapped(soup.vertices[v]); });
-    return soup;
   }
 
- private:
   void count() {
     cell_.assign(origin_.size(), {});
     bent_.assign(rise_ > 0 && !creases_ ? origin_.size() : 0, {});
@@ -144,23 +140,54 @@ class IsoSurface {
     for_each_index(size_t(0), origin_.size(), [&](size_t b) {
       float window[kWindow * kWindow * kWindow];
       read_cell_window(sharpened_ ? *sharpened_ : field_, origin_[b], window);
+      if (sharpened_ && field_.sides) end_at_sides(origin_[b], window);
       work(b, window);
     });
   }
+
+  void end_at_sides(Voxel origin, float* window) const {
+    for (int x = 0; x < kWindow; ++x)
+      for (int y = 0; y < kWindow; ++y)
+        for (int z = 0; z < kWindow; ++z)
+          if (!field_.sides->hold(plus(origin, x, y, z)))
+            window[x * kWindowStride[0] + y * kWindowStride[1] + z] = float(field_.background);
+  }
+
+  /// Whether the surface is known in a cell, whose smallest corner is given.
+  bool is_known(Voxel cell, const float* corner) const {
+    if (field_.sides && !field_.sides->are_closed && !field_.sides->hold_cell(cell)) return false;
+    for (int c = 0; c < 8; ++c)
+      if (std::isnan(corner[window_index((c >> 2) << 6 | (c >> 1 & 1) << 3 | (c & 1))])) return false;
+    return true;
+  }
+
+  /// Calls visit as each_cut_cell does, for cells in which the surface is known.
+  template <class Points, class Visit>
+  void each_known_cell(size_t b, const float* window, const Points& points, Visit visit) const {
+    each_cut_cell(window, points, [&](int offset, const float* corner, int inside) {
+      if (is_known(cell_at(b, offset), corner)) visit(offset, corner, inside);
+    });
+  }
+  Voxel cell_at(size_t b, int offset) const { return plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7); }
 
   void count(size_t b, const float* window) {
     CellBlock& cell = cell_[b];
     const InsidePoints inside(window, inside_);
     for (int offset = 0; offset < 512; ++offset) {
       const int at = window_index(offset);
-      if (std::isnan(window[at])) refuse_nan(plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7));
+      cell.unknown_values += std::isnan(window[at]) ? 1 : 0;
       for (int axis = 0; axis < 3; ++axis)
         cell.cut[axis][offset >> 6] |= uint64_t(inside.at[at] != inside.at[at + kWindowStride[axis]]) << (offset & 63);
     }
     for (const auto& axis : cell.cut)
       for (const uint64_t word : axis) cell.cuts += uint32_t(popcount64(word));
     each_cut_cell(window, inside, [&](int offset, const float* corner, int corners_inside) {
-      if (rise_ > 0 && !creases_) bent_[b].add(corner, rise_);
+      const bool is_at_side = field_.sides && !field_.sides->hold_cell(cell_at(b, offset));
+      if (!is_known(cell_at(b, offset), corner)) {
+        if (!is_at_side && cell.unknown_cells++ == 0) cell.first_unknown = offset;
+        return;
+      }
+      if (rise_ > 0 && !creases_ && !is_at_side) bent_[b].add(corner, rise_);
       const IsoCase& loops = kIsoCases.of[corners_inside];
       for (int l = 0; l < loops.loops; ++l) {
         const bool crease = creases_ && creases_->vertex(b, offset, l), middle = loops.size[l] >= kCentreLoop;
@@ -170,10 +197,17 @@ class IsoSurface {
     });
   }
 
-  [[noreturn]] void refuse_nan(Voxel v) const {
-    throw Error(ErrorCode::unreadable_input, "read",
-                field_.title() + ", voxel (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
-                    std::to_string(v.z) + "): its value is not a number; repair the volume");
+  UnknownValues unknown_values() const {
+    UnknownValues unknown;
+    for (size_t b = 0; b < cell_.size(); ++b) {
+      unknown.values += cell_[b].unknown_values;
+      if (unknown.cells == 0 && cell_[b].unknown_cells > 0) {
+        const Voxel v = cell_at(b, cell_[b].first_unknown);
+        unknown.first_world = mapped({v.x + .5, v.y + .5, v.z + .5});
+      }
+      unknown.cells += cell_[b].unknown_cells;
+    }
+    return unknown;
   }
 
   void make_room(TriangleSoup& soup) {
@@ -216,7 +250,7 @@ class IsoSurface {
       owners[n] = uint32_t(found - origin_.begin());  // only looked at where an edge begins there: then it is listed
     }
     int64_t middle = first_crease_vertex(b) + crease_vertices(b), triangle = cell_[b].first_triangle;
-    each_cut_cell(window, inside_, [&](int offset, const float*, int inside) {
+    each_known_cell(b, window, inside_, [&](int offset, const float*, int inside) {
       const IsoCase& loops = kIsoCases.of[inside];
       const int8_t* edge = loops.edge;
       for (int l = 0; l < loops.loops; edge += loops.size[l++]) {
@@ -284,7 +318,8 @@ class IsoSurface {
     const CreaseCrossing* beside_crease = creases_ ? creases_->crossing(b, axis, offset) : nullptr;
     double t = beside_crease ? beside_crease->place : crossing_on_edge(at[0], at[kWindowStride[axis]], inside_.iso);
     if (creases_) t = std::clamp(t, kCreaseEdgeEnd, 1 - kCreaseEdgeEnd);
-    const Voxel o = plus(origin_[b], offset >> 6, offset >> 3 & 7, offset & 7);
+    const Voxel o = cell_at(b, offset);
+    if (const auto end = end_at_side(field_, o, axis)) t = *end == o ? 0 : 1;
     return {o.x + (axis == 0 ? t : 0), o.y + (axis == 1 ? t : 0), o.z + (axis == 2 ? t : 0)};
   }
 
@@ -297,6 +332,7 @@ class IsoSurface {
   /// With creases, vertices are mapped when all are in their places.
   WorldPoint to_world(WorldPoint p) const { return creases_ ? p : mapped(p); }
   WorldPoint mapped(WorldPoint p) const {
+    if (field_.sides) p = field_.sides->halved(p);
     const auto& m = field_.to_world.at;
     return {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
             m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
@@ -325,7 +361,7 @@ class IsoSurface {
 }  // namespace
 
 ValueRange value_range(const ScalarField& field) {
-  ValueRange range{float(field.background), float(field.background)};
+  ValueRange range{float(field.background), float(field.background), {}};
   const auto include = [&](float value) {
     if (value < range.low) range.low = value;
     if (value > range.high) range.high = value;
@@ -334,15 +370,22 @@ ValueRange value_range(const ScalarField& field) {
   const int all[3] = {kFieldBlock, kFieldBlock, kFieldBlock};
   for (const Voxel& block : field.blocks()) {
     field.copy(block, all, window.data());
-    for (const float value : window) include(value);
+    for (int i = 0; i < 512; ++i) {
+      const float value = window[size_t(window_index(i))];
+      if (std::isnan(value)) range.unknown = plus(block, i >> 6, i >> 3 & 7, i & 7);
+      include(value);
+    }
   }
   for (const FieldTile& tile : field.tiles()) include(tile.value);
   return range;
 }
 
 TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes,
-                                 VolumeCreases creases) {
-  return IsoSurface(field, iso, memory_limit_bytes, creases).extract();
+                                 VolumeCreases creases, UnknownValues* unknown) {
+  UnknownValues found;
+  TriangleSoup soup = IsoSurface(field, iso, memory_limit_bytes, creases).extract(found);
+  if (unknown) *unknown = found;
+  return soup;
 }
 
 }  // namespace isoshell

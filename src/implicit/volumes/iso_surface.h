@@ -1,6 +1,8 @@
 // The surface on which a scalar field has one value.
 #pragma once
 
+#include <optional>
+
 #include "implicit/volumes/scalar_field.h"
 #include "isoshell/io/volume_file.h"
 #include "isoshell/surface_source.h"
@@ -9,17 +11,26 @@ namespace isoshell {
 
 struct ValueRange {
   float low, high;
+  std::optional<Voxel> unknown;  ///< one of the points whose values are no numbers
 };
-/// Over blocks, tiles and background; NaN is passed over.
+/// Over blocks, tiles and background.
 ValueRange value_range(const ScalarField& field);
 
+/// Values that are not numbers.
+struct UnknownValues {
+  int64_t values = 0;  ///< in blocks that the surface may cross
+  int64_t cells = 0;   ///< that the surface crosses, and has no triangles in, as a value of theirs is not known
+  WorldPoint first_world{0, 0, 0};  ///< the middle of the first of them
+};
+
 /// Marching cubes over the cells of the lattice. Result: every edge of a triangle belongs to two triangles, which run
-/// through it in opposite directions; vertices lie on lattice edges, where the trilinear field has the value, and at
-/// the middle of patches of six and more corners. Outside is where the background lies. Cost: linear in the blocks.
-/// Throws: unreadable_input for a NaN, nothing_to_mesh without a crossing, out_of_memory beyond 32-bit indices
-/// or the limit, where one is given. Creases have vertices of their own where they are wanted and values are distances;
-/// where bodies are not sharp, asking for theirs costs a look at the cut cells, and changes nothing.
+/// through it in opposite directions, but on the borders that it has where values are not known and at open sides;
+/// vertices lie on lattice edges, where the trilinear field has the value, and at the middle of patches of six and more
+/// corners. Closed sides are flat, with vertices at their lattice points. Outside is where the background lies. Cost:
+/// linear in the blocks. Throws: nothing_to_mesh without a crossing, out_of_memory beyond 32-bit indices or the limit,
+/// where one is given. Creases have vertices of their own where they are wanted and values are distances; where bodies
+/// are not sharp, asking for theirs costs a look at the cut cells, and changes nothing.
 TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes = 0,
-                                 VolumeCreases creases = VolumeCreases::none);
+                                 VolumeCreases creases = VolumeCreases::none, UnknownValues* unknown = nullptr);
 
 }  // namespace isoshell

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +58,30 @@ inline double cube_edge(const AffineMap& map) {
   return std::sqrt(sq);
 }
 
+/// Beyond them nothing is known of a field, and its surface ends there.
+struct FieldSides {
+  Voxel first, last;        ///< the outermost lattice points
+  bool are_closed = true;   ///< by faces in the planes of these points
+  bool are_halved = false;  ///< the outermost cells are half as thick as others
+
+  bool hold(Voxel v) const {
+    return v.x >= first.x && v.y >= first.y && v.z >= first.z && v.x <= last.x && v.y <= last.y && v.z <= last.z;
+  }
+  /// Whether all corners of the cell behind its smallest one are held.
+  bool hold_cell(Voxel v) const { return hold(v) && v.x < last.x && v.y < last.y && v.z < last.z; }
+  bool hold_block(Voxel origin) const {
+    return hold(origin) && hold({origin.x + kFieldBlock, origin.y + kFieldBlock, origin.z + kFieldBlock});
+  }
+  /// Where a point of the lattice is, whose outermost cells may be halved.
+  WorldPoint halved(const WorldPoint& p) const {
+    const auto along = [](double x, int32_t low, int32_t high) {
+      return x < low + 1 ? .5 * (x + low + 1) : x > high - 1 ? .5 * (x + high - 1) : x;
+    };
+    if (!are_halved) return p;
+    return {along(p.x, first.x, last.x), along(p.y, first.y, last.y), along(p.z, first.z, last.z)};
+  }
+};
+
 class ScalarField {
  public:
   virtual ~ScalarField() = default;
@@ -64,14 +90,19 @@ class ScalarField {
   virtual std::vector<Voxel> blocks() const = 0;
   /// Tiles, in any order; where there is neither block nor tile the field has the value of the background.
   virtual std::vector<FieldTile> tiles() const = 0;
-  /// The first size[i] values along each axis of the block at `origin`, or of the tile there, at kWindowStride.
+  /// The first size[i] values along each axis of the block at `origin`, or of the tile there, at kWindowStride. NaN
+  /// where nothing is known.
   virtual void copy(Voxel origin, const int size[3], float* to) const = 0;
+  /// The same field, but going on beyond its sides as it came to them, for what looks at its slopes; null without
+  /// sides.
+  virtual std::unique_ptr<ScalarField> continued() const { return nullptr; }
 
   std::string title() const { return file + ": grid \"" + name + "\""; }
 
   std::string file, name, grid_class;
   double background = 0;
   AffineMap to_world;
+  std::optional<FieldSides> sides;
 };
 
 /// Copies from an array of 512 values, z fastest, `value(i)` giving the i-th.

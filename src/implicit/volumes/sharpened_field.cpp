@@ -10,6 +10,7 @@ SharpenedField::SharpenedField(const ScalarField& field, Inside inside, double r
   file = field.file, name = field.name, grid_class = field.grid_class;
   background = field.background;
   to_world = field.to_world;
+  sides = field.sides;
   for_each_index(size_t(0), blocks.size(),
                  [&](size_t b) { of_block_[b] = find_filled_points(field, inside, rise, blocks[b]); });
 }
