@@ -144,7 +144,8 @@ class Volume:
             remesh_sequence(); NaN where nothing is known.
         sides: where a surface ends that reaches the sides of the array. "sample": at the outermost values, with flat
             faces; "cell": the same half a voxel farther out, as for values in the middle of voxels; "open": at the
-            outermost values, with a border, which boundary="keep" keeps. None is "cell" for booleans, else "sample".
+            outermost values, with a border, which boundary="keep" keeps. None is "cell" for booleans, for others "open"
+            with boundary="keep" and "sample" without.
     """
 
     def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None,

@@ -148,8 +148,8 @@ def _source_of(given: Any) -> Source:
     if isinstance(given, Points):
         return Source.points(*_points_of(given))
     if isinstance(given, Volume):
-        sides = ("cell" if is_true_or_false(given) else "sample") if given.sides is None else given.sides
-        return Source.volume(*_lattice_of("volume", given), sides)
+        by_default = "cell" if is_true_or_false(given) else ""
+        return Source.volume(*_lattice_of("volume", given), by_default if given.sides is None else given.sides)
     if isinstance(given, Labels):
         return Source.labels(values_of(given), lattice_of(given))
     if isinstance(given, (tuple, list)) and len(given) == 2:

@@ -105,7 +105,8 @@ Source points(const AnyArray& positions, const std::optional<AnyArray>& normals)
           [given](const RunRequest& request, const Context& context) {
             refuse_volume_options(request);
             return input_of(*given, "points", context.memory_limit_bytes, request.tell,
-                            volume_creases(request.options.values.features));
+                            volume_creases(request.options.values.features),
+                            request.options.values.boundary == Boundary::keep);
           },
           {},
           {}};
@@ -128,7 +129,8 @@ DenseVolume dense_volume(const char* argument, const AnyArray& values, const Tri
   return lattice(floats_of(argument, values, 3), values, spacing, origin);
 }
 
-VolumeSides sides_named(const std::string& name) {
+VolumeSides sides_named(const std::string& name, Boundary boundary) {
+  if (name.empty()) return boundary == Boundary::keep ? VolumeSides::open : VolumeSides::sample;
   if (name == "sample") return VolumeSides::sample;
   if (name == "cell") return VolumeSides::cell;
   if (name == "open") return VolumeSides::open;
@@ -138,10 +140,15 @@ VolumeSides sides_named(const std::string& name) {
 Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin, const std::string& sides) {
   const DenseVolume v = dense_volume("volume", values, spacing, origin);
   return {"",
-          [v, at_sides = sides_named(sides)](const RunRequest& request, const Context& context) {
+          [v, sides](const RunRequest& request, const Context& context) {
             refuse_label_options(request);
-            const VolumeReadOptions options{"", request.input.iso, context.memory_limit_bytes,
-                                            volume_creases(request.options.values.features), at_sides};
+            const Boundary boundary = request.options.values.boundary;
+            const VolumeReadOptions options{"",
+                                            request.input.iso,
+                                            context.memory_limit_bytes,
+                                            volume_creases(request.options.values.features),
+                                            sides_named(sides, boundary),
+                                            boundary == Boundary::keep};
             return input_of(v, "volume", options, request.tell);
           },
           nb::cast(values),

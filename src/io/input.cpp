@@ -30,6 +30,7 @@ namespace isoshell {
 namespace {
 
 constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no point supports
+constexpr double kNotableJumps = 0.01;     // of the cells that the surface of a volume crosses
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::unreadable_input, "read", message); }
 [[noreturn]] void refuse_use(const std::string& message) { throw Error(ErrorCode::usage, "read", message); }
@@ -87,11 +88,11 @@ class Reader {
       refuse(path + ": the format '" + format + "' is not one of " + listed_formats(reads_anything, ", ") +
              "; say which by --input-format" + python_remedy(path, false));
     if (known->reads_mesh && known->reads_points)
-      read_ply(request.creases);
+      read_ply(request);
     else if (known->reads_mesh)
       hold(read_mesh(path, format, context_.memory_limit_bytes));
     else if (known->reads_points)
-      hold(read_points(path, format, context_.memory_limit_bytes), request.creases);
+      hold(read_points(path, format, context_.memory_limit_bytes), request.creases, request.keep_open);
     else if (format == "vdb" && path != "-" && is_stage_file(path))
       read_stage_file();
     else
@@ -116,10 +117,10 @@ class Reader {
     input_.soup = std::move(soup);
   }
 
-  void hold(const PointCloud& cloud, VolumeCreases creases) {
+  void hold(const PointCloud& cloud, VolumeCreases creases, bool keep_open) {
     input_.facts.kind = InputKind::points;
     PointSurfaceInfo points;
-    hold(surface_of_points(cloud, context_.memory_limit_bytes, points, creases));
+    hold(surface_of_points(cloud, context_.memory_limit_bytes, points, creases, keep_open));
     input_.facts.vertices = points.points;
     std::ostringstream text;
     text << counted(points.points, "point") << ", spacing " << points.spacing_world << ", surface from voxels of "
@@ -130,8 +131,8 @@ class Reader {
     if (points.normals_ignored) warn("its normals do not fit its points; others were estimated");
     if (points.outliers > 0) warn(counted(points.outliers, "point") + " left out, far from all others");
     if (points.open_part >= kNotableOpenPart)
-      warn(std::to_string(std::lround(100 * points.open_part)) +
-           " % of the surface has no points near it and was closed smoothly");
+      warn(std::to_string(std::lround(100 * points.open_part)) + " % of the surface has no points near it and " +
+           (keep_open ? "was left out" : "was closed smoothly; --boundary keep leaves it open"));
   }
 
   template <class Extract>
@@ -147,11 +148,18 @@ class Reader {
     if (volume.open_cells > 0) {
       const WorldPoint& at = volume.first_open_world;
       std::ostringstream open;
-      open << counted(volume.unknown_values, "value")
-           << (volume.unknown_values == 1 ? " is no number" : " are no numbers") << ", and its surface is open in "
-           << counted(volume.open_cells, "cell") << " beside such, the first near " << at.x << ' ' << at.y << ' '
-           << at.z << ": holes there are closed, or kept by --boundary keep";
+      if (volume.unknown_values > 0)
+        open << counted(volume.unknown_values, "value")
+             << (volume.unknown_values == 1 ? " is no number" : " are no numbers") << ", and its";
+      else
+        open << "its distances jump, and its";
+      open << " surface is open in " << counted(volume.open_cells, "cell") << " there, the first near " << at.x << ' '
+           << at.y << ' ' << at.z << ": holes there are closed, or kept by --boundary keep";
       warn(open.str());
+    } else if (volume.jumping_part >= kNotableJumps) {
+      warn(std::to_string(std::lround(100 * volume.jumping_part)) +
+           " % of its surface is where its distances jump: it has one side of an open surface alone, or was clipped; "
+           "--boundary keep leaves it open there");
     }
     if (volume.kind == VolumeKind::open_unsigned_distance)
       warn(
@@ -174,12 +182,12 @@ class Reader {
   Input taken() { return std::move(input_); }
 
  private:
-  void read_ply(VolumeCreases creases) {
+  void read_ply(const InputRequest& request) {
     PlyContent content = read_ply_content(input_.facts.path, context_.memory_limit_bytes);
     if (!content.is_points) return hold(std::move(content.mesh));
     if (content.unusable_faces > 0)
       warn("none of its faces is usable (" + with_commas(content.unusable_faces) + "); it is read as a point cloud");
-    hold(content.points, creases);
+    hold(content.points, request.creases, request.keep_open);
   }
 
   void read_volume_file(const InputRequest& request) {
@@ -187,7 +195,10 @@ class Reader {
     const MeshSource source(request.path, budget);
     if (holds_labels(source, request.grid)) return read_label_file(source, request);
     hold_volume([&](VolumeInfo& volume) {
-      return read_volume(source, {request.grid, request.iso, context_.memory_limit_bytes, request.creases}, volume);
+      return read_volume(source,
+                         {request.grid, request.iso, context_.memory_limit_bytes, request.creases, VolumeSides::sample,
+                          request.keep_open},
+                         volume);
     });
   }
 
@@ -281,12 +292,12 @@ Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell) {
 }
 
 Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell,
-               VolumeCreases creases) {
+               VolumeCreases creases, bool keep_open) {
   check_points(cloud, name);
   Context context;
   context.memory_limit_bytes = memory_limit_bytes;
   Reader reader(name, context, tell);
-  reader.hold(cloud, creases);
+  reader.hold(cloud, creases, keep_open);
   return reader.taken();
 }
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "implicit/volumes/dense_field.h"
+#include "implicit/volumes/field_jumps.h"
 #include "implicit/volumes/iso_surface.h"
 #include "implicit/volumes/unsigned_field.h"
 #include "io/vdb/volume_readers.h"
@@ -48,7 +49,7 @@ bool may_be_unsigned(const std::string& grid_class) {
 }
 
 /// The surface of unsigned distances: of their sides, or around the zero set where that encloses nothing.
-TriangleSoup surface_of_unsigned(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+TriangleSoup surface_of_unsigned(ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
   const ValueRange range = value_range(field);
   if (range.low == range.high) refuse_without_iso(field, range, "");
   const DistanceKind kind = kind_of_distance(field);
@@ -62,6 +63,11 @@ TriangleSoup surface_of_unsigned(const ScalarField& field, const VolumeReadOptio
   const SignedSides sides = find_sides(field, kind.voxel, options.memory_limit_bytes);
   if (sides.enclosing_part >= kLeastEnclosing)
     return extract_iso_surface(*sides.field, 0, options.memory_limit_bytes, options.creases);
+  if (options.keep_open)
+    throw Error(ErrorCode::usage, "read",
+                field.title() +
+                    ": the zero set of its unsigned distances encloses nothing, and --boundary keep has no "
+                    "side to leave open; leave it out for the crust around it, or give distances with signs");
   info.kind = VolumeKind::open_unsigned_distance;
   info.iso = kCrustVoxels * kind.voxel;
   return extract_iso_surface(field, info.iso, options.memory_limit_bytes);
@@ -69,7 +75,7 @@ TriangleSoup surface_of_unsigned(const ScalarField& field, const VolumeReadOptio
 
 /// The surface at the value asked for, or at 0 in a level set; one that does not say so shows it by a background
 /// outside and values inside.
-TriangleSoup surface_of(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+TriangleSoup surface_of(ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
   if (options.iso) {
     info.iso = *options.iso;
   } else if (field.grid_class != kLevelSet) {
@@ -77,11 +83,17 @@ TriangleSoup surface_of(const ScalarField& field, const VolumeReadOptions& optio
     if (range.low >= 0 && may_be_unsigned(field.grid_class)) return surface_of_unsigned(field, options, info);
     if (field.grid_class != kUnknown || range.low >= 0 || field.background <= 0) refuse_without_iso(field, range, "");
   }
+  if (!options.iso) {
+    const std::unique_ptr<ScalarField> continued = field.continued();
+    field.most_rise = most_rise_of(continued ? *continued : field, inside_of(field, 0));
+    field.opens_at_jumps = options.keep_open;
+  }
   UnknownValues unknown;
   TriangleSoup soup = extract_iso_surface(field, info.iso, options.memory_limit_bytes, options.creases, &unknown);
   info.unknown_values = unknown.values;
   info.open_cells = unknown.cells;
   info.first_open_world = unknown.first_world;
+  info.jumping_part = unknown.jumping_part;
   return soup;
 }
 
@@ -95,7 +107,7 @@ double voxel_size(const AffineMap& map) {
   return std::sqrt(longest_sq);
 }
 
-TriangleSoup described_surface_of(const ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+TriangleSoup described_surface_of(ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
   info.grid = field.name;
   info.grid_class = field.grid_class;
   info.voxel_size_world = voxel_size(field.to_world);
@@ -129,7 +141,8 @@ TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& opti
 
 TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info) {
-  return described_surface_of(DenseField(volume, name, options.iso, options.sides), options, info);
+  DenseField field(volume, name, options.iso, options.sides);
+  return described_surface_of(field, options, info);
 }
 
 }  // namespace isoshell

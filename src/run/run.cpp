@@ -31,6 +31,7 @@ VolumeCreases volume_creases(const Features& features) {
 Input read_input_of(const RunRequest& request, const Context& context, const Tell& tell) {
   InputRequest input = request.input;
   input.creases = volume_creases(request.options.values.features);
+  input.keep_open = request.options.values.boundary == Boundary::keep;
   return read_input(input, context, tell);
 }
 

@@ -100,12 +100,10 @@ TEST_CASE("sides: any values give a surface that is closed and oriented, or open
       CHECK(topology.oriented);
       CHECK(dirt.degenerate_faces == 0);
     }
-    const Array unknown(9, 13, 17, [&](int64_t x, int64_t y, int64_t z) {
-      return x == 4 && y == 5 ? std::nan("") : noise(x, y, z);
-    });
+    const Array unknown(
+        9, 13, 17, [&](int64_t x, int64_t y, int64_t z) { return x == 4 && y == 5 ? std::nan("") : noise(x, y, z); });
     const TriangleSoup open = unknown.surface(VolumeSides::sample);
-    for (const WorldPoint& p : open.vertices)
-      REQUIRE((std::abs(p.x - 4) >= 1 || std::abs(p.y - 5) >= 1));
+    for (const WorldPoint& p : open.vertices) REQUIRE((std::abs(p.x - 4) >= 1 || std::abs(p.y - 5) >= 1));
     CHECK(!is_closed_2_manifold_by_edges(open));
   }
 }

@@ -37,6 +37,7 @@ struct InputRequest {
   std::optional<double> iso;                    ///< of a volume
   LabelReading labels = {};                     ///< of a volume of labels
   VolumeCreases creases = VolumeCreases::none;  ///< of a volume or points; a run sets it by its features
+  bool keep_open = false;                       ///< the same of borders; a run sets it by its boundary
 };
 
 /// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or
@@ -81,6 +82,6 @@ Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const 
 /// points; and as surface_of_points does.
 Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell = {});
 Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {},
-               VolumeCreases creases = VolumeCreases::of_sharp_bodies);
+               VolumeCreases creases = VolumeCreases::of_sharp_bodies, bool keep_open = false);
 
 }  // namespace isoshell

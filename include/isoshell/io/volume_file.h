@@ -32,6 +32,8 @@ struct VolumeReadOptions {
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
   VolumeCreases creases = VolumeCreases::none;
   VolumeSides sides = VolumeSides::sample;
+  /// Distances jump where a grid holds one side of an open surface, or was clipped: the surface is open there.
+  bool keep_open = false;
 };
 
 /// What the values of a grid were taken for.
@@ -49,8 +51,9 @@ struct VolumeInfo {
   double voxel_size_world = 0;  ///< longest edge of a voxel
   int64_t blocks = 0;           ///< of 8^3 voxels that hold values of their own
   int64_t unknown_values = 0;   ///< that are not numbers, near the surface
-  int64_t open_cells = 0;       ///< in which the surface is open beside these
+  int64_t open_cells = 0;       ///< in which the surface is open, beside these or where distances jump
   WorldPoint first_open_world{0, 0, 0};
+  double jumping_part = 0;  ///< of the surface: where distances jump, as at the end of a band on one side of it alone
 };
 
 /// Reads one grid and extracts the surface on which its trilinear field has the value `iso`: closed, 2-manifold, with

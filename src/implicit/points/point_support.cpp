@@ -6,6 +6,7 @@
 
 #include "core/index_sets.h"
 #include "core/parallel_ranges.h"
+#include "geometry/make_one.h"
 #include "geometry/outward_normals.h"
 #include "isoshell/advanced/voxel_set.h"
 
@@ -197,15 +198,7 @@ void drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup) {
   soup.triangles.erase(std::remove_if(soup.triangles.begin(), soup.triangles.end(),
                                       [&](const auto& t) { return !components.keeps(t[0]); }),
                        soup.triangles.end());
-  std::vector<uint32_t> number(soup.vertices.size());
-  uint32_t kept = 0;
-  for (uint32_t v = 0; v < number.size(); ++v) {
-    if (!components.keeps(v)) continue;
-    soup.vertices[kept] = soup.vertices[v];
-    number[v] = kept++;
-  }
-  for (auto& t : soup.triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
-  soup.vertices.resize(kept);
+  drop_unused_vertices(soup);
 }
 
 std::vector<uint8_t> find_supported(const PointsOfSurface& of, const TriangleSoup& soup) {

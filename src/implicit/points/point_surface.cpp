@@ -10,6 +10,7 @@
 #include "implicit/points/indicator_grid.h"
 #include "implicit/points/point_distances.h"
 #include "implicit/points/point_support.h"
+#include "implicit/points/trim_to_points.h"
 #include "implicit/volumes/iso_surface.h"
 #include "isoshell/error.h"
 #include "isoshell/io/point_file.h"
@@ -20,6 +21,7 @@ namespace {
 constexpr int64_t kMaxGrid = int64_t(1) << 27;
 constexpr int64_t kBytesPerVoxel = 9;   // value and source, and an eighth of them on the next grid; or distances
 constexpr double kVoxelSpacings = 1.5;  // noise of a scan is about its spacing: finer voxels make handles of it
+constexpr double kLeastLevel = 0.02;    // at that of the rim, 0, and below, the space around would be inside
 constexpr double kLineSpacings = 0.01;  // points that keep so near to a line have no side
 constexpr size_t kOutlierNeighbours = 8, kFewestForOutliers = 200;
 constexpr double kOutlierToNeighbours = 2.2;  // times as far from its neighbours as they, or all points, from theirs
@@ -150,7 +152,7 @@ TriangleSoup extract_smooth(const GridShape& shape, std::vector<float> value, do
 }  // namespace
 
 TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info,
-                               VolumeCreases creases) {
+                               VolumeCreases creases, bool keep_open) {
   std::vector<WorldPoint> position = cloud.position, normal = cloud.normal;
   keep_different(position, normal);
   info.points = int64_t(position.size());
@@ -174,10 +176,11 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   const GridShape shape = shape_around(points.position, kVoxelSpacings * points.spacing, most);
   info.voxel_size_world = shape.voxel_size;
   std::vector<float> value = solve_indicator(points, shape);
-  const double level = level_at_points(points, shape, value);
+  double level = level_at_points(points, shape, value);
   std::vector<WorldPoint> flat;
   if (creases != VolumeCreases::none) flat = find_flat_normals(points, tree);
   info.sharp = !flat.empty();
+  if (!info.sharp) level = std::max(level, kLeastLevel);
   TriangleSoup soup = info.sharp ? extract_sharp(points, std::move(flat), {shape, value, level}, memory_limit_bytes)
                                  : extract_smooth(shape, std::move(value), level, memory_limit_bytes);
   const PointsOfSurface around{points, tree, shape.voxel_size};
@@ -188,6 +191,7 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   const std::vector<uint8_t> supported = info.sharp ? find_supported(around, soup) : pull_to_points(around, soup);
   const int64_t held = std::accumulate(supported.begin(), supported.end(), int64_t(0));
   info.open_part = 1 - double(held) / double(soup.vertices.size());
+  if (keep_open) trim_to_points(around, soup);
   soup.faces_in_file = 0;
   soup.dirt = cloud.dirt;
   return soup;

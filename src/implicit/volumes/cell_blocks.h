@@ -13,7 +13,7 @@ namespace isoshell {
 /// What a block of cells owns: lattice edges that begin in it, by axis and corner, and the middles of patches.
 struct CellBlock {
   uint64_t cut[3][8] = {};
-  uint32_t cuts = 0, middles = 0, triangles = 0, unknown_values = 0, unknown_cells = 0;
+  uint32_t cuts = 0, middles = 0, triangles = 0, cells = 0, unknown_values = 0, unknown_cells = 0, jumps = 0;
   int first_unknown = 0;  ///< of the cells
   int64_t first_vertex = 0, first_triangle = 0;
 

@@ -22,6 +22,11 @@ struct Inside {
   bool operator()(double value) const { return below ? value < limit() : value > limit(); }
 };
 
+/// The side of a value that the background does not lie on.
+inline Inside inside_of(const ScalarField& field, double iso) {
+  return {iso, field.background == iso ? field.grid_class == "level set" : field.background > iso};
+}
+
 inline Voxel plus(Voxel a, int32_t x, int32_t y, int32_t z) { return {a.x + x, a.y + y, a.z + z}; }
 
 /// The block `step` lattice points away along each axis of the corner's bits.

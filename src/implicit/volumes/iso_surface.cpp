@@ -9,12 +9,13 @@
 #include <sstream>
 
 #include "core/parallel_ranges.h"
+#include "geometry/make_one.h"
 #include "geometry/world_vector.h"
 #include "implicit/volumes/cell_blocks.h"
 #include "implicit/volumes/crease_intersections.h"
 #include "implicit/volumes/crease_vertices.h"
+#include "implicit/volumes/field_jumps.h"
 #include "implicit/volumes/field_sharpness.h"
-#include "implicit/volumes/make_one.h"
 #include "implicit/volumes/sharpened_field.h"
 #include "implicit/volumes/tile_borders.h"
 #include "io/faces/face_collector.h"
@@ -39,7 +40,7 @@ class IsoSurface {
       : field_(field),
         wanted_(creases),
         memory_limit_bytes_(memory_limit_bytes > 0 ? memory_limit_bytes : INT64_MAX),
-        inside_{iso, field.background == iso ? field.grid_class == "level set" : field.background > iso} {}
+        inside_(inside_of(field, iso)) {}
 
   TriangleSoup extract(UnknownValues& unknown) {
     list_cell_blocks();
@@ -158,7 +159,7 @@ class IsoSurface {
     if (field_.sides && !field_.sides->are_closed && !field_.sides->hold_cell(cell)) return false;
     for (int c = 0; c < 8; ++c)
       if (std::isnan(corner[window_index((c >> 2) << 6 | (c >> 1 & 1) << 3 | (c & 1))])) return false;
-    return true;
+    return !field_.opens_at_jumps || !jumps_in_cell(corner, field_.most_rise);
   }
 
   /// Calls visit as each_cut_cell does, for cells in which the surface is known.
@@ -183,6 +184,8 @@ class IsoSurface {
       for (const uint64_t word : axis) cell.cuts += uint32_t(popcount64(word));
     each_cut_cell(window, inside, [&](int offset, const float* corner, int corners_inside) {
       const bool is_at_side = field_.sides && !field_.sides->hold_cell(cell_at(b, offset));
+      ++cell.cells;
+      cell.jumps += field_.most_rise > 0 && !is_at_side && jumps_in_cell(corner, field_.most_rise) ? 1 : 0;
       if (!is_known(cell_at(b, offset), corner)) {
         if (!is_at_side && cell.unknown_cells++ == 0) cell.first_unknown = offset;
         return;
@@ -199,6 +202,7 @@ class IsoSurface {
 
   UnknownValues unknown_values() const {
     UnknownValues unknown;
+    int64_t jumps = 0, cells = 0;
     for (size_t b = 0; b < cell_.size(); ++b) {
       unknown.values += cell_[b].unknown_values;
       if (unknown.cells == 0 && cell_[b].unknown_cells > 0) {
@@ -206,7 +210,10 @@ class IsoSurface {
         unknown.first_world = mapped({v.x + .5, v.y + .5, v.z + .5});
       }
       unknown.cells += cell_[b].unknown_cells;
+      jumps += cell_[b].jumps;
+      cells += cell_[b].cells;
     }
+    unknown.jumping_part = cells > 0 ? double(jumps) / double(cells) : 0;
     return unknown;
   }
 

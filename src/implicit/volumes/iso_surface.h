@@ -16,11 +16,12 @@ struct ValueRange {
 /// Over blocks, tiles and background.
 ValueRange value_range(const ScalarField& field);
 
-/// Values that are not numbers.
+/// Values that are not numbers, or jump.
 struct UnknownValues {
   int64_t values = 0;  ///< in blocks that the surface may cross
   int64_t cells = 0;   ///< that the surface crosses, and has no triangles in, as a value of theirs is not known
   WorldPoint first_world{0, 0, 0};  ///< the middle of the first of them
+  double jumping_part = 0;          ///< of the cells that the surface crosses, those in which values jump
 };
 
 /// Marching cubes over the cells of the lattice. Result: every edge of a triangle belongs to two triangles, which run

@@ -103,6 +103,8 @@ class ScalarField {
   double background = 0;
   AffineMap to_world;
   std::optional<FieldSides> sides;
+  double most_rise = 0;         ///< from a point to the next; where values differ by more they jump; 0: nowhere
+  bool opens_at_jumps = false;  ///< the surface is not known there
 };
 
 /// Copies from an array of 512 values, z fastest, `value(i)` giving the i-th.

@@ -1,0 +1,70 @@
+// Clouds of open surfaces, which have borders where borders are kept.
+#include <cmath>
+
+#include "isoshell/advanced/stages.h"
+#include "isoshell/io/point_file.h"
+#include "support/catch.h"
+#include "support/shapes.h"
+#include "voxel/random.h"
+
+using namespace isoshell;
+
+namespace {
+
+double random(uint64_t axis, uint64_t i) { return double(random_bits(axis, i) >> 11) / double(uint64_t(1) << 53); }
+
+/// Points of a square of side 1, bent, each moved by up to `noise`.
+PointCloud sheet(int count, double bend, double noise) {
+  PointCloud cloud;
+  for (int i = 0; i < count; ++i) {
+    const double x = random(0, uint64_t(i)), y = random(1, uint64_t(i));
+    cloud.position.push_back({x, y, bend * std::sin(4 * x) * std::cos(3 * y) + noise * (2 * random(2, uint64_t(i)) - 1)});
+  }
+  return cloud;
+}
+
+InputTopology topology_of(const TriangleSoup& soup) {
+  Context context;
+  return measure_topology(soup, context).topology;
+}
+
+double area_of(const TriangleSoup& soup) { return topology_of(soup).area_world; }
+
+TriangleSoup surface(const PointCloud& cloud, bool keep_open) {
+  PointSurfaceInfo info;
+  return surface_of_points(cloud, 0, info, VolumeCreases::none, keep_open);
+}
+
+}  // namespace
+
+TEST_CASE("trimmed points: a sheet has one border and the area of its points, noisy or not", "[points][unit]") {
+  for (const double noise : {0., .002, .005})
+    for (const double bend : {0., .1}) {
+      INFO("noise " << noise << ", bend " << bend);
+      const PointCloud cloud = sheet(6000, bend, noise);
+      const TriangleSoup closed = surface(cloud, false), open = surface(cloud, true);
+      CHECK(topology_of(closed).closed);
+      const InputTopology topology = topology_of(open);
+      CHECK(topology.components == 1);
+      CHECK(topology.boundary_loops == 1);
+      const double truth = bend == 0 ? 1 : 1.02;
+      CHECK(area_of(open) > truth);
+      CHECK(area_of(open) < 1.12 * truth);
+      CHECK(area_of(closed) > 2 * truth);
+    }
+}
+
+TEST_CASE("trimmed points: a ball that is whole stays closed, and one with a hole has a border there",
+          "[points][unit]") {
+  PointCloud whole, cut;
+  for (int i = 0; i < 5000; ++i) {
+    const double z = 2 * random(0, uint64_t(i)) - 1, turn = 2 * std::acos(-1) * random(1, uint64_t(i)),
+                 r = std::sqrt(1 - z * z);
+    whole.position.push_back({r * std::cos(turn), r * std::sin(turn), z});
+    if (z < .6) cut.position.push_back(whole.position.back());
+  }
+  CHECK(topology_of(surface(whole, true)).closed);
+  const TriangleSoup open = surface(cut, true);
+  CHECK(!topology_of(open).closed);
+  for (const WorldPoint& p : open.vertices) CHECK(p.z < .75);
+}
