@@ -148,8 +148,10 @@ def _source_of(given: Any) -> Source:
     if isinstance(given, Points):
         return Source.points(*_points_of(given))
     if isinstance(given, Volume):
-        by_default = "cell" if is_true_or_false(given) else ""
-        return Source.volume(*_lattice_of("volume", given), by_default if given.sides is None else given.sides)
+        if given.sides not in (None, "sample", "cell", "open"):
+            raise Error(f'sides must be "sample", "cell" or "open", and is {given.sides!r}')
+        is_mask = is_true_or_false(given)
+        return Source.volume(*_lattice_of("volume", given), given.sides or ("cell" if is_mask else ""), is_mask)
     if isinstance(given, Labels):
         return Source.labels(values_of(given), lattice_of(given))
     if isinstance(given, (tuple, list)) and len(given) == 2:

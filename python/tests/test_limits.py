@@ -290,12 +290,13 @@ def test_broken_files(run, tmp_path, nefertiti, claim):
     assert "KHR_node_visibility" in run(tmp_path / "hidden.gltf").said
 
 
-@claims("points or arrays with NaN or infinity, from memory | 3 |")
+@claims("points with NaN or infinity, and arrays with infinity, from memory | 3 |")
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_numbers_that_are_none(value, claim):
     vertices, faces = make_ball()
     vertices[5, 1] = value
-    for source in ((vertices, faces), isoshell.Points(vertices)):
+    lattice = np.where(np.arange(27) == 13, np.inf, -1).reshape(3, 3, 3)
+    for source in ((vertices, faces), isoshell.Points(vertices), isoshell.Volume(lattice)):
         with pytest.raises(isoshell.Error) as caught:
             isoshell.remesh(source, vertices=100)
         assert caught.value.code == 3

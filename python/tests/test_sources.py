@@ -164,6 +164,12 @@ def test_a_field_that_reaches_the_sides_of_its_array_ends_there_in_flat_faces_wi
             assert made.report["quality"]["theta_min_deg"] >= 30
 
 
+def test_true_is_inside_however_much_of_the_array_it_is():
+    x, y, z = np.meshgrid(*[np.arange(12)] * 3, indexing="ij")
+    assert volume_of(isoshell.remesh(isoshell.Volume(z < 9), **SMALL)) == pytest.approx(12 * 12 * 9, rel=0.01)
+    assert volume_of(isoshell.remesh(isoshell.Volume(z < 99), **SMALL)) == pytest.approx(12**3, rel=0.01)
+
+
 def test_a_surface_that_reaches_the_sides_of_its_array_may_stay_open_there():
     x, _, z = np.meshgrid(*[np.arange(20.0)] * 3, indexing="ij")
     terrain = isoshell.Volume(z - 8.3 - np.sin(x / 3), sides="open")

@@ -35,7 +35,7 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "arguments", message); }
+[[noreturn]] void refuse(const char* message) { throw Error(ErrorCode::usage, "arguments", message); }
 
 /// Of what is in memory and no volume of labels.
 void refuse_label_options(const RunRequest& request) {
@@ -129,18 +129,17 @@ DenseVolume dense_volume(const char* argument, const AnyArray& values, const Tri
   return lattice(floats_of(argument, values, 3), values, spacing, origin);
 }
 
+/// Python has looked whether there is such a name.
 VolumeSides sides_named(const std::string& name, Boundary boundary) {
   if (name.empty()) return boundary == Boundary::keep ? VolumeSides::open : VolumeSides::sample;
-  if (name == "sample") return VolumeSides::sample;
-  if (name == "cell") return VolumeSides::cell;
-  if (name == "open") return VolumeSides::open;
-  refuse("sides must be \"sample\", \"cell\" or \"open\", and is \"" + name + "\"");
+  return name == "open" ? VolumeSides::open : name == "cell" ? VolumeSides::cell : VolumeSides::sample;
 }
 
-Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin, const std::string& sides) {
+Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin, const std::string& sides,
+              bool is_mask) {
   const DenseVolume v = dense_volume("volume", values, spacing, origin);
   return {"",
-          [v, sides](const RunRequest& request, const Context& context) {
+          [v, sides, is_mask](const RunRequest& request, const Context& context) {
             refuse_label_options(request);
             const Boundary boundary = request.options.values.boundary;
             const VolumeReadOptions options{"",
@@ -148,6 +147,7 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
                                             context.memory_limit_bytes,
                                             volume_creases(request.options.values.features),
                                             sides_named(sides, boundary),
+                                            is_mask,
                                             boundary == Boundary::keep};
             return input_of(v, "volume", options, request.tell);
           },
@@ -252,8 +252,9 @@ void bind_source(nb::module_& m) {
       .def_static("points", points, nb::arg("positions"), nb::arg("normals").none(),
                   nb::sig("def points(positions: typing.Any, normals: typing.Any) -> Source"))
       .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"), nb::arg("sides"),
+                  nb::arg("is_mask"),
                   nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
-                          "float, float], sides: str) -> Source"))
+                          "float, float], sides: str, is_mask: bool) -> Source"))
       .def_static("labels", labels, nb::arg("values"), nb::arg("lattice"),
                   nb::sig("def labels(values: typing.Any, lattice: LabelLattice) -> Source"))
       .def("set_velocities_of_vertices", set_velocities_of_vertices, nb::arg("velocities"), nb::arg("vertices"),

@@ -136,7 +136,7 @@ class Reader {
   }
 
   template <class Extract>
-  void hold_volume(Extract extract) {
+  void hold_volume(bool keep_open, Extract extract) {
     input_.facts.kind = InputKind::volume;
     VolumeInfo volume;
     hold(extract(volume));
@@ -154,7 +154,7 @@ class Reader {
       else
         open << "its distances jump, and its";
       open << " surface is open in " << counted(volume.open_cells, "cell") << " there, the first near " << at.x << ' '
-           << at.y << ' ' << at.z << ": holes there are closed, or kept by --boundary keep";
+           << at.y << ' ' << at.z << (keep_open ? "" : ": holes there are closed, or kept by --boundary keep");
       warn(open.str());
     } else if (volume.jumping_part >= kNotableJumps) {
       warn(std::to_string(std::lround(100 * volume.jumping_part)) +
@@ -194,10 +194,10 @@ class Reader {
     ReadingBudget budget(context_.memory_limit_bytes);
     const MeshSource source(request.path, budget);
     if (holds_labels(source, request.grid)) return read_label_file(source, request);
-    hold_volume([&](VolumeInfo& volume) {
+    hold_volume(request.keep_open, [&](VolumeInfo& volume) {
       return read_volume(source,
                          {request.grid, request.iso, context_.memory_limit_bytes, request.creases, VolumeSides::sample,
-                          request.keep_open},
+                          false, request.keep_open},
                          volume);
     });
   }
@@ -310,7 +310,8 @@ Input input_of(LabelVolume volume, const std::string& name, const Context& conte
 Input input_of(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options, const Tell& tell) {
   const Context unlimited;  // the options have the limit
   Reader reader(name, unlimited, tell);
-  reader.hold_volume([&](VolumeInfo& info) { return surface_of_volume(volume, name, options, info); });
+  reader.hold_volume(options.keep_open,
+                     [&](VolumeInfo& info) { return surface_of_volume(volume, name, options, info); });
   return reader.taken();
 }
 

@@ -116,6 +116,8 @@ TriangleSoup described_surface_of(ScalarField& field, const VolumeReadOptions& o
 }
 
 void check_map(const ScalarField& field) {
+  if (std::isnan(field.background))
+    throw Error(ErrorCode::unreadable_input, "read", field.title() + " has a background that is not a number");
   if (!is_invertible(field.to_world))
     throw Error(ErrorCode::unreadable_input, "read",
                 field.title() + " has a transform that is not finite or has no inverse");
@@ -141,7 +143,7 @@ TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& opti
 
 TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info) {
-  DenseField field(volume, name, options.iso, options.sides);
+  DenseField field(volume, name, options);
   return described_surface_of(field, options, info);
 }
 

@@ -2,8 +2,10 @@
 #include <cmath>
 
 #include "isoshell/advanced/stages.h"
+#include "isoshell/error.h"
 #include "isoshell/io/point_file.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "voxel/random.h"
 
@@ -18,7 +20,8 @@ PointCloud sheet(int count, double bend, double noise) {
   PointCloud cloud;
   for (int i = 0; i < count; ++i) {
     const double x = random(0, uint64_t(i)), y = random(1, uint64_t(i));
-    cloud.position.push_back({x, y, bend * std::sin(4 * x) * std::cos(3 * y) + noise * (2 * random(2, uint64_t(i)) - 1)});
+    cloud.position.push_back(
+        {x, y, bend * std::sin(4 * x) * std::cos(3 * y) + noise * (2 * random(2, uint64_t(i)) - 1)});
   }
   return cloud;
 }
@@ -67,4 +70,29 @@ TEST_CASE("trimmed points: a ball that is whole stays closed, and one with a hol
   const TriangleSoup open = surface(cut, true);
   CHECK(!topology_of(open).closed);
   for (const WorldPoint& p : open.vertices) CHECK(p.z < .75);
+}
+
+TEST_CASE("trimmed points: of many bodies each stays, however small", "[points][unit]") {
+  PointCloud cloud;
+  for (int body = 0; body < 27; ++body)
+    for (int i = 0; i < 200; ++i) {
+      const double z = 1 - (2 * i + 1.) / 200, r = std::sqrt(1 - z * z), turn = 2.399963229728653 * i;
+      const WorldPoint n{r * std::cos(turn), r * std::sin(turn), z};
+      const double size = body == 0 ? 3 : 1;
+      cloud.normal.push_back(n);
+      cloud.position.push_back(
+          {8. * (body % 3) + size * n.x, 8. * (body / 3 % 3) + size * n.y, 8. * (body / 9) + size * n.z});
+    }
+  const int64_t whole = topology_of(surface(cloud, false)).components;
+  CHECK(whole == 27);
+  CHECK(topology_of(surface(cloud, true)).components == whole);
+}
+
+TEST_CASE("trimmed points: where no point has others around it, nothing is left, and an error says why",
+          "[points][unit]") {
+  PointCloud few;
+  for (int i = 0; i < 5; ++i)
+    few.position.push_back({random(0, uint64_t(i)), random(1, uint64_t(i)), random(2, uint64_t(i))});
+  CHECK(topology_of(surface(few, false)).closed);
+  CHECK(contains(message_of(ErrorCode::nothing_to_mesh, [&] { surface(few, true); }), "leave that out"));
 }

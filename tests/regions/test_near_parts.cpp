@@ -143,6 +143,13 @@ TEST_CASE("parts: a pin with other facets than its hole shares the wall when it 
                  "--snap is 0.5; it may be at most a 20th of the longest side, 0.298858"));
 }
 
+TEST_CASE("parts: nothing is said of near parts that are made one as they should be", "[regions][unit]") {
+  const TriangleSoup boxes = shapes::together(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({1.001, 0, 0}, {2, 1, 1}));
+  CpuContext context;
+  for (const double near : {.0065, .0031, .0047, .0013, .0119})
+    CHECK(find_part_regions(boxes, {"cells", near, near}, context).warnings.empty());
+}
+
 TEST_CASE("parts: where cuts do not end with all that is near made one, less is, and a warning says how much",
           "[regions][unit]") {
   constexpr int kBars = 8;

@@ -65,3 +65,33 @@ TEST_CASE("jumps: distances of a closed body have none, and it stays closed with
   CHECK(is_closed_2_manifold_by_edges(read_volume(path, options, info)));
   CHECK(info.jumping_part == 0);
 }
+
+TEST_CASE("jumps: values that are no distances, and distances of voxels that are no cubes, have none",
+          "[volume][unit]") {
+  const auto surface = [](const std::vector<float>& values, const WorldPoint& spacing, VolumeInfo& info) {
+    constexpr int64_t n = 24;
+    const DenseVolume volume{values.data(), {n, n, n}, {n * n, n, 1}, spacing, {0, 0, 0}};
+    return surface_of_volume(volume, "mine", {"", {}, 0, VolumeCreases::none, VolumeSides::open, false, true}, info);
+  };
+  const auto values_of = [](const auto& value) {
+    std::vector<float> values;
+    for (int x = 0; x < 24; ++x)
+      for (int y = 0; y < 24; ++y)
+        for (int z = 0; z < 24; ++z) values.push_back(float(value(x, y, z)));
+    return values;
+  };
+  const auto is_whole = [&](const std::vector<float>& values, const WorldPoint& spacing) {
+    VolumeInfo info;
+    return is_closed_2_manifold_by_edges(surface(values, spacing, info)) && info.jumping_part == 0;
+  };
+  CHECK(is_whole(values_of([](int x, int y, int z) { return std::hypot(x - 12, y - 12, z - 12) < 7.3 ? -1 : 1; }),
+                 {1, 1, 1}));
+  CHECK(is_whole(values_of([](int x, int y, int z) {  // a cylinder, whose ends are along the long sides of voxels
+                   return std::max(std::hypot(x - 12, y - 12) - 7.3, 3 * (std::abs(z - 12) - 6.4));
+                 }),
+                 {1, 1, 3}));
+  const std::vector<float> cliff = values_of([](int x, int, int z) { return z - 12 - 9 * std::tanh(double(x) - 12); });
+  VolumeInfo info;
+  surface(cliff, {1, 1, 1}, info);
+  CHECK(info.open_cells == 0);
+}

@@ -108,8 +108,44 @@ TEST_CASE("sides: any values give a surface that is closed and oriented, or open
   }
 }
 
-TEST_CASE("sides: an array of one value along an axis has a surface half a voxel out alone", "[volume][unit]") {
+TEST_CASE("sides: of an array of one value along an axis they are half a voxel out", "[volume][unit]") {
   const Array plate(9, 9, 1, [](int64_t x, int64_t, int64_t) { return double(x) - 4; });
   CHECK(volume(plate.surface(VolumeSides::cell)) == Approx(4.5 * 9).epsilon(1e-3));
-  CHECK(contains(message_of(ErrorCode::usage, [&] { plate.surface(VolumeSides::sample); }), "sides=\"cell\""));
+  CHECK(volume(plate.surface(VolumeSides::sample)) == Approx(4.5 * 9).epsilon(1e-3));
+}
+
+TEST_CASE("sides: unsigned distances end there as signed ones do", "[volume][unit]") {
+  const auto distance = [](int64_t x, int64_t y, int64_t z) { return std::hypot(x - 4., y - 9., z - 9.) - 6.3; };
+  const Array of_signs(14, 19, 19, distance);
+  const Array without(14, 19, 19, [&](int64_t x, int64_t y, int64_t z) { return std::abs(distance(x, y, z)); });
+  for (const VolumeSides sides : {VolumeSides::sample, VolumeSides::cell})
+    CHECK(volume(without.surface(sides)) == Approx(volume(of_signs.surface(sides))).epsilon(.04));
+}
+
+TEST_CASE("sides: they are closed where they were asked to be, also where borders are kept", "[volume][unit]") {
+  const Array below(12, 12, 12, [](int64_t, int64_t, int64_t z) { return double(z) - 9.25; });
+  for (const VolumeSides sides : {VolumeSides::sample, VolumeSides::cell}) {
+    VolumeInfo info;
+    const TriangleSoup soup =
+        surface_of_volume(below.volume, "mine", {"", {}, 0, VolumeCreases::none, sides, false, true}, info);
+    CHECK(is_closed_2_manifold_by_edges(soup));
+    CHECK(volume(soup) == Approx(sides == VolumeSides::cell ? 12 * 12 * 9.75 : 11 * 11 * 9.25));
+  }
+}
+
+TEST_CASE("sides: unknown values say neither which side of the isovalue is outside nor that a body is open",
+          "[volume][unit]") {
+  const auto ball = [](int64_t x, int64_t y, int64_t z) { return std::hypot(x - 9., y - 9., z - 9.) - 6.3; };
+  const Array cylinder(19, 19, 19, [&](int64_t x, int64_t y, int64_t z) {
+    return std::hypot(x - 9., y - 9.) > 8.5 || std::abs(z - 9) > 8 ? std::nan("") : ball(x, y, z);
+  });
+  const Array hollow(
+      19, 19, 19, [&](int64_t x, int64_t y, int64_t z) { return ball(x, y, z) < -3 ? std::nan("") : ball(x, y, z); });
+  for (const Array* array : {&cylinder, &hollow}) {
+    VolumeInfo info;
+    const TriangleSoup soup = surface_of_volume(array->volume, "mine", {"", 0., 0, VolumeCreases::none}, info);
+    CHECK(is_closed_2_manifold_by_edges(soup));
+    CHECK(volume(soup) == Approx(4 * std::acos(-1) * 6.3 * 6.3 * 6.3 / 3).epsilon(.04));
+    CHECK(info.open_cells == 0);
+  }
 }

@@ -18,7 +18,7 @@ enum class VolumeCreases {
 
 /// Where the surface of an array's values ends that reaches the sides of the array.
 enum class VolumeSides {
-  sample,  ///< at the outermost values, with flat faces
+  sample,  ///< at the outermost values, with flat faces; of one value along an axis as `cell`
   cell,    ///< half a voxel farther out, with flat faces: values stand in the middle of voxels
   open,    ///< at the outermost values, with a border
 };
@@ -32,7 +32,9 @@ struct VolumeReadOptions {
   int64_t memory_limit_bytes = 0;  ///< refuse grids that would need more, before they are read; 0 means no limit
   VolumeCreases creases = VolumeCreases::none;
   VolumeSides sides = VolumeSides::sample;
-  /// Distances jump where a grid holds one side of an open surface, or was clipped: the surface is open there.
+  bool is_mask = false;  ///< of an array: what is above the isovalue is inside, also where that is most of it
+  /// Without an isovalue: distances jump where a grid holds one side of an open surface alone, or was clipped, and the
+  /// surface is open there.
   bool keep_open = false;
 };
 

@@ -23,6 +23,7 @@ constexpr double kCheap = 0.75;                    ///< squares of edges of the 
 constexpr double kMostSquares[] = {2, 8, kNever};  ///< that a collapse may cost, one after the other
 constexpr double kShortSquare = 0.25;              ///< of an edge of the result: shorter ones are collapsed further
 constexpr int64_t kManyVertices = 2;               ///< for one that is to stay: cheap ones go in all blocks at once
+constexpr int64_t kHardlyAny = 1000;               ///< one of so many collapsed is not worth another look at all
 constexpr int64_t kStepsBetweenLooks = 1024;
 
 /// The mean of squared distances from planes, weighted by areas.
@@ -234,7 +235,8 @@ void coarsen(WallMesh& mesh, int64_t vertices, const Context& context) {
     for (const auto shapes : {WallMesh::Shapes::good, WallMesh::Shapes::any})
       coarsen_all(mesh, vertices, squares * square, shapes, kShortSquare * square, known, context);
   // What could not be collapsed may be once others were, also far from it.
-  for (int64_t before = 0; mesh.vertex_count() > vertices && mesh.vertex_count() != before;) {
+  for (int64_t before = INT64_MAX;
+       mesh.vertex_count() > vertices && before - mesh.vertex_count() > before / kHardlyAny;) {
     before = mesh.vertex_count();
     coarsen_all(mesh, vertices, kNever, WallMesh::Shapes::any, kShortSquare * square, known, context);
   }

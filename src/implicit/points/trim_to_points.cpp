@@ -10,16 +10,17 @@
 #include "core/parallel_ranges.h"
 #include "geometry/make_one.h"
 #include "geometry/outward_normals.h"
+#include "isoshell/error.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kFar = 2;               // spacings; the noise of a scan is about one
-constexpr double kBeyond = 4;             // what no point looks the way of, in terms of what is far
+constexpr double kFar = 2;     // spacings; the noise of a scan is about one
+constexpr double kBeyond = 4;  // what no point looks the way of, in terms of what is far
 constexpr int kRounds = 10;
-constexpr size_t kNeighbours = 16;       // points among which one looks the surface's way
-constexpr double kEdgeEnd = 1. / 16;     // of an edge, which cuts keep away from its ends
-constexpr double kSmallestPiece = 0.01;  // of the area that is left
+constexpr size_t kNeighbours = 16;     // points among which one looks the surface's way
+constexpr double kEdgeEnd = 1. / 16;   // of an edge, which cuts keep away from its ends
+constexpr double kSmallestPiece = 30;  // squares of the spacing, of a piece that was cut off from others
 
 /// Per vertex how far it is from points, in terms of what is far; below 1 it is near some. The less a point looks the
 /// vertex's way the farther it counts as, up to twice as far: beyond the last points the surface turns in.
@@ -75,19 +76,20 @@ class Trim {
     }
   }
 
-  void drop_small_pieces() {
+  void drop_small_pieces(double spacing) {
     IndexSets sets{int64_t(soup_.vertices.size())};
     std::vector<double> area(soup_.vertices.size(), 0);
-    double all = 0;
+    std::vector<uint8_t> is_cut(soup_.vertices.size(), 0);
     for (const auto& t : soup_.triangles)
       for (const uint32_t v : {t[1], t[2]}) sets.unite(t[0], v);
     for (const auto& t : soup_.triangles) {
-      const double a = triangle_area(soup_.vertices[t[0]], soup_.vertices[t[1]], soup_.vertices[t[2]]);
-      area[sets.root(t[0])] += a;
-      all += a;
+      area[sets.root(t[0])] += triangle_area(soup_.vertices[t[0]], soup_.vertices[t[1]], soup_.vertices[t[2]]);
+      for (const uint32_t v : t)
+        if (v >= far_.size()) is_cut[sets.root(t[0])] = 1;
     }
     const auto is_small = [&](const std::array<uint32_t, 3>& t) {
-      return area[sets.root(t[0])] < kSmallestPiece * all;
+      const uint32_t piece = sets.root(t[0]);
+      return is_cut[piece] && area[piece] < kSmallestPiece * spacing * spacing;
     };
     soup_.triangles.erase(std::remove_if(soup_.triangles.begin(), soup_.triangles.end(), is_small),
                           soup_.triangles.end());
@@ -119,8 +121,13 @@ void trim_to_points(const PointsOfSurface& of, TriangleSoup& soup) {
   even_out(soup, far);
   Trim trim(far, soup);
   trim.cut();
-  trim.drop_small_pieces();
+  trim.drop_small_pieces(of.points.spacing);
   drop_unused_vertices(soup);
+  if (soup.triangles.empty())
+    throw Error(
+        ErrorCode::nothing_to_mesh, "points",
+        "no part of their surface has points all around it, and nothing is left with --boundary keep; leave that "
+        "out");
 }
 
 }  // namespace isoshell

@@ -5,9 +5,9 @@
 
 namespace isoshell {
 
-/// Cuts off what is farther from points that look its way than three times as far as these are from one another, and
-/// pieces that are left of it with hardly any area; the triangles are cut where that is so, and have a border there.
-/// Cost: a search for points near each vertex.
+/// Cuts off what is twice as far from points that look its way as these are from one another, and sooner where they
+/// look another way, and crumbs that this leaves; triangles are cut where that is so, and have a border there. Cost: a
+/// search for points near each vertex. Throws: nothing_to_mesh where nothing is left.
 void trim_to_points(const PointsOfSurface& of, TriangleSoup& soup);
 
 }  // namespace isoshell

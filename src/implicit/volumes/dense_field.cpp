@@ -13,6 +13,11 @@ namespace {
 
 int32_t blocks_along(int64_t size) { return int32_t((size + kFieldBlock - 1) / kFieldBlock); }
 
+/// Where both sides of an array are at its only value, the surface has to end farther out.
+bool ends_half_out(const DenseVolume& volume, VolumeSides sides) {
+  return sides == VolumeSides::cell || *std::min_element(volume.size, volume.size + 3) < 2;
+}
+
 /// Of the part of a block that lies in the array.
 struct BlockRange {
   float low = INFINITY, high = -INFINITY;
@@ -23,9 +28,8 @@ struct BlockRange {
 
 }  // namespace
 
-DenseField::DenseField(const DenseVolume& volume, const std::string& volume_name, const std::optional<double>& iso,
-                       VolumeSides at_sides)
-    : volume_(volume), padding_(at_sides == VolumeSides::cell ? 1 : 0) {
+DenseField::DenseField(const DenseVolume& volume, const std::string& volume_name, const VolumeReadOptions& options)
+    : volume_(volume), padding_(ends_half_out(volume, options.sides) ? 1 : 0) {
   file = volume_name;
   name = "values";
   grid_class = "unknown";
@@ -35,12 +39,15 @@ DenseField::DenseField(const DenseVolume& volume, const std::string& volume_name
   to_world = lattice_map(spacing, origin - double(padding_) * spacing);
   sides = FieldSides{{0, 0, 0},
                      {int32_t(size_[0]) - 1, int32_t(size_[1]) - 1, int32_t(size_[2]) - 1},
-                     at_sides != VolumeSides::open,
-                     at_sides == VolumeSides::cell};
+                     options.sides != VolumeSides::open,
+                     padding_ > 0};
   double low = INFINITY, high = -INFINITY;
   split_into_blocks(low, high);
   if (!(low <= high)) refuse_unknown();
-  background = !iso || is_mostly_above(*iso) ? high : low;
+  if (options.is_mask)
+    background = std::min(low, 0.);
+  else
+    background = !options.iso || is_mostly_above(*options.iso) ? high : low;
   drop_background();
 }
 
@@ -50,8 +57,6 @@ void DenseField::check(const std::string& volume_name) const {
     if (size < 1 || size > kFieldReach)
       refuse(" has " + std::to_string(size) + " values along an axis; it must have 1 to " +
              std::to_string(kFieldReach));
-  for (const int64_t size : size_)
-    if (size < 2) refuse(" has 1 value along an axis, where both sides of the array are; give sides=\"cell\"");
   const WorldPoint &s = volume_.spacing_world, &o = volume_.origin_world;
   for (const double spacing : {s.x, s.y, s.z})
     if (!(spacing > 0) || !std::isfinite(spacing)) refuse(": its spacing must be above 0 along every axis");
@@ -105,15 +110,18 @@ bool DenseField::is_mostly_above(double iso) const {
   int64_t above = 0, count = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (const int64_t end : {int64_t(0), size_[axis] - 1})
+    for (const int64_t step : {1, -1})
       for (int64_t i = 0; i < size_[u]; ++i)
         for (int64_t j = 0; j < size_[v]; ++j) {
           int64_t place[3];
-          place[axis] = end;
+          place[axis] = step > 0 ? 0 : size_[axis] - 1;
           place[u] = i;
           place[v] = j;
-          above += double(at(place[0], place[1], place[2])) > iso;
-          ++count;
+          const auto value = [&] { return at(place[0], place[1], place[2]); };
+          while (std::isnan(value()) && place[axis] + step >= 0 && place[axis] + step < size_[axis])
+            place[axis] += step;
+          above += double(value()) > iso;
+          count += std::isnan(value()) ? 0 : 1;
         }
   }
   return 2 * above > count;

@@ -15,8 +15,7 @@ namespace isoshell {
 class DenseField : public ScalarField {
  public:
   /// Cost: one pass over the values. Throws: as surface_of_volume does for what is no volume.
-  DenseField(const DenseVolume& volume, const std::string& volume_name, const std::optional<double>& iso,
-             VolumeSides sides);
+  DenseField(const DenseVolume& volume, const std::string& volume_name, const VolumeReadOptions& options);
 
   std::vector<Voxel> blocks() const override { return blocks_; }
   std::vector<FieldTile> tiles() const override { return tiles_; }
@@ -36,7 +35,7 @@ class DenseField : public ScalarField {
   void check(const std::string& volume_name) const;
   void split_into_blocks(double& low, double& high);
   void drop_background();
-  /// Whether most values at the faces of the array are above `iso`.
+  /// Whether most values at the faces of the array, or the nearest known ones, are above `iso`.
   bool is_mostly_above(double iso) const;
   [[noreturn]] void refuse_unknown() const;
   [[noreturn]] void refuse_value(Voxel block) const;

@@ -59,7 +59,7 @@ class IsoSurface {
     TriangleSoup soup = write();
     if (creases_) take_intersecting_back(soup);
     const auto same = same_at_sides(field_, origin_, cell_);
-    const bool is_open = unknown.cells > 0 || (field_.sides && !field_.sides->are_closed);
+    const bool is_open = unknown.cells + unknown.values > 0 || (field_.sides && !field_.sides->are_closed);
     if (is_open || !same.empty()) make_one(soup, same);
     return soup;
   }
@@ -154,12 +154,25 @@ class IsoSurface {
             window[x * kWindowStride[0] + y * kWindowStride[1] + z] = float(field_.background);
   }
 
-  /// Whether the surface is known in a cell, whose smallest corner is given.
+  bool jumps(const float* corner) const {
+    return field_.most_rise > 0 && jumps_in_cell(corner, field_.most_rise, field_.background);
+  }
+  /// Whether a cell has triangles, whose smallest corner is given.
   bool is_known(Voxel cell, const float* corner) const {
-    if (field_.sides && !field_.sides->are_closed && !field_.sides->hold_cell(cell)) return false;
+    const bool is_at_side = field_.sides && !field_.sides->hold_cell(cell);
+    if (is_at_side && !field_.sides->are_closed) return false;
     for (int c = 0; c < 8; ++c)
       if (std::isnan(corner[window_index((c >> 2) << 6 | (c >> 1 & 1) << 3 | (c & 1))])) return false;
-    return !field_.opens_at_jumps || !jumps_in_cell(corner, field_.most_rise);
+    return is_at_side || !field_.opens_at_jumps || !jumps(corner);
+  }
+  /// Whether the surface crosses a cell: what is not known is on neither side of it.
+  bool is_crossed(const float* corner) const {
+    bool has_inside = false, has_outside = false;
+    for (int c = 0; c < 8; ++c) {
+      const float value = corner[window_index((c >> 2) << 6 | (c >> 1 & 1) << 3 | (c & 1))];
+      if (!std::isnan(value)) (inside_(value) ? has_inside : has_outside) = true;
+    }
+    return has_inside && has_outside;
   }
 
   /// Calls visit as each_cut_cell does, for cells in which the surface is known.
@@ -185,9 +198,9 @@ class IsoSurface {
     each_cut_cell(window, inside, [&](int offset, const float* corner, int corners_inside) {
       const bool is_at_side = field_.sides && !field_.sides->hold_cell(cell_at(b, offset));
       ++cell.cells;
-      cell.jumps += field_.most_rise > 0 && !is_at_side && jumps_in_cell(corner, field_.most_rise) ? 1 : 0;
+      cell.jumps += !is_at_side && jumps(corner) ? 1 : 0;
       if (!is_known(cell_at(b, offset), corner)) {
-        if (!is_at_side && cell.unknown_cells++ == 0) cell.first_unknown = offset;
+        if (!is_at_side && is_crossed(corner) && cell.unknown_cells++ == 0) cell.first_unknown = offset;
         return;
       }
       if (rise_ > 0 && !creases_ && !is_at_side) bent_[b].add(corner, rise_);
@@ -379,7 +392,7 @@ ValueRange value_range(const ScalarField& field) {
     field.copy(block, all, window.data());
     for (int i = 0; i < 512; ++i) {
       const float value = window[size_t(window_index(i))];
-      if (std::isnan(value)) range.unknown = plus(block, i >> 6, i >> 3 & 7, i & 7);
+      if (std::isnan(value) && !range.unknown) range.unknown = plus(block, i >> 6, i >> 3 & 7, i & 7);
       include(value);
     }
   }

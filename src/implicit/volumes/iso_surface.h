@@ -11,7 +11,7 @@ namespace isoshell {
 
 struct ValueRange {
   float low, high;
-  std::optional<Voxel> unknown;  ///< one of the points whose values are no numbers
+  std::optional<Voxel> unknown;  ///< the first of the points whose values are no numbers
 };
 /// Over blocks, tiles and background.
 ValueRange value_range(const ScalarField& field);

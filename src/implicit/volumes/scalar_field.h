@@ -103,7 +103,7 @@ class ScalarField {
   double background = 0;
   AffineMap to_world;
   std::optional<FieldSides> sides;
-  double most_rise = 0;         ///< from a point to the next; where values differ by more they jump; 0: nowhere
+  double most_rise = 0;         ///< from a point to the next; where values differ by more they jump; 0: not looked at
   bool opens_at_jumps = false;  ///< the surface is not known there
 };
 

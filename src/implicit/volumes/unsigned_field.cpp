@@ -40,6 +40,7 @@ class SignedField : public ScalarField {
     grid_class = "level set";
     background = of.background;
     to_world = of.to_world;
+    sides = of.sides;
   }
   std::vector<Voxel> blocks() const override { return lattice_.blocks(); }
   std::vector<FieldTile> tiles() const override { return {}; }
@@ -50,7 +51,8 @@ class SignedField : public ScalarField {
     for (int x = 0; x < size[0]; ++x)
       for (int y = 0; y < size[1]; ++y)
         for (int z = 0; z < size[2]; ++z)
-          if (inside_[first + (in_block ? uint32_t(x * 64 + y * 8 + z) : 0)])
+          if (inside_[first + (in_block ? uint32_t(x * 64 + y * 8 + z) : 0)] &&
+              (!sides || sides->hold({origin.x + x, origin.y + y, origin.z + z})))
             turn(to[x * kWindowStride[0] + y * kWindowStride[1] + z]);
   }
 

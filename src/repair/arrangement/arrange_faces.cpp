@@ -185,11 +185,11 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
     std::optional<LatticeFaces> cut = cut_all(std::move(faces), left, at, context);
     if (cut) {
       ArrangedFaces result = result_of(std::move(*cut), soup, welded, box);
-      result.near_world = groups.near_world * reach_steps / whole.reach_steps;
+      result.near_world = groups.near_world * (reach_steps / whole.reach_steps);
       return result;
     }
     work_left = for_others + std::max<int64_t>(0, left);
-    failed_at = frame.to_world(at);
+    if (reach_steps == whole.reach_steps) failed_at = frame.to_world(at);
   }
   return {};
 }
