@@ -24,7 +24,7 @@ environment() { # folder, modules, command that makes it, packages...
 
 packages=(numpy scipy nanobind pytest mypy trimesh lxml networkx meshio h5py nibabel k3d usd-core distributed fsspec psutil dask-jobqueue cryptography manifold3d==3.5.4)
 if command -v chromium google-chrome >/dev/null; then packages+=(playwright); fi
-if [ "${1:-}" = ci ]; then packages+=(pyvista gmsh pymeshlab pyarrow); fi
+if [ "${1:-}" = ci ]; then packages+=(pyvista gmsh tetgen pymeshlab pyarrow); fi
 modules=${packages[*]%%==*}
 modules=${modules/usd-core/pxr}
 modules=${modules//-/_}

@@ -1,4 +1,5 @@
-"""The command where INPUT or OUTPUT is a file that only Python reads or writes: a stage of USD, or of another package."""
+"""The command where INPUT or OUTPUT is a file that only Python reads or writes, a stage of USD or of another package, and
+with --fill FILE, which writes tetrahedra too."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from typing import Any, Optional
 
 from ._errors import Error, RunWarning
 from ._exchange import format_of
+from ._fill import check_target
 from ._isoshell import VERSION, ErrorCode
 from ._keywords import kinds
 from ._remesh import estimate, remesh
@@ -26,7 +28,7 @@ SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help", "-V": "--version", 
 def names_ours(words: list[str]) -> bool:
     """Whether INPUT or OUTPUT is one, and nobody asks for the help."""
     places, options = split_words(words)
-    is_ours = any(is_usd(place) for place in places) or any(
+    is_ours = "fill" in options or any(is_usd(place) for place in places) or any(
         format_of(place) is not None and not options.get(option)
         for place, option in zip(places, ("input_format", "output_format")))
     return is_ours and not {"help", "version"} & set(options)
@@ -45,7 +47,7 @@ def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
         option, is_joined, value = word[2:].partition("=")
         name = option.replace("-", "_")
         kind = kinds().get(name)
-        if not is_joined and (kind is None or kind.is_flag):
+        if not is_joined and name != "fill" and (kind is None or kind.is_flag):
             options[name] = True
             continue
         text = value if is_joined else left.pop(0) if left else ""
@@ -96,6 +98,10 @@ def _check(options: dict[str, Any]) -> None:
         raise Error(f"--{missing[0].replace('_', '-')} needs a value", stage="command line")
     if "frames" in options and options.get("dry_run"):
         raise Error("--dry-run estimates one frame; leave out --frames and name it", stage="command line")
+    if "fill" in options:
+        if "frames" in options:
+            raise Error("--fill is for one mesh; leave out --frames and name a frame", stage="command line")
+        check_target(options["fill"], bool(options.get("force")))
     alone = [name for name in OF_FRAMES if name in options and "frames" not in options]
     if alone:
         raise Error(f"--{alone[0].replace('_', '-')} needs --frames", stage="command line")
@@ -111,8 +117,14 @@ def _run(places: list[str], options: dict[str, Any]) -> None:
             print(json.dumps({"schema": 1, "version": VERSION, "estimate": found}, indent=2))
         return
     result: Optional[Result] = None
+    to_fill = options.pop("fill", None)
     try:
         result = remesh(places[0], output=places[1], **options)
+        if to_fill is not None:
+            filled = result.fill()
+            filled.save(to_fill, overwrite=bool(options.get("force")))
+            if not options.get("quiet"):
+                _tell(f"{to_fill}: {len(filled.vertices)} vertices, {len(filled.tetrahedra)} tetrahedra")
     except Error as error:
         result = error.result
         raise

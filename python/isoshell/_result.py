@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import torch  # type: ignore[import-not-found, import-untyped, unused-ignore]
     import trimesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
+    from ._fill import Filled
     from ._keywords import Keywords
 
     Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -208,6 +209,26 @@ class Result:
         label of faces, or 3 for a region. Needs meshio."""
         made: meshio.Mesh = to_package("_meshio", self)
         return made
+
+    def fill(self, mesher: str = "tetgen", quality: float = 1.4) -> Filled:
+        """Tetrahedra in every region, or in the closed mesh, whose outer triangles are those of the result, bit for bit.
+
+        Each connected piece of a region is filled by itself. Needs tetgen or gmsh, both on PyPI, under their own
+        licenses.
+
+        Args:
+            mesher: "tetgen", whose tetrahedra grow inwards as far as `quality` lets them, or "gmsh", whose edges are as
+                long as those of the surface.
+            quality: for TetGen, how many times as long as its shortest edge the radius of a tetrahedron's circumsphere
+                may be; near the surface it may be more.
+
+        Raises:
+            Error: of code USAGE for an open mesh, and for a piece that the program does not fill to 99.9 % or whose
+                surface it changes, with the place where its faces meet at the smallest angle.
+        """
+        from ._fill import fill
+
+        return fill(self, mesher, quality)
 
     def to_torch(self, device: Optional[Any] = None) -> tuple[torch.Tensor, torch.Tensor]:
         """Vertices (K, 3) float64 and faces (M, 3) int64 as tensors of torch, which own their memory. Needs torch.

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "implicit/volumes/dense_field.h"
-#include "implicit/volumes/field_jumps.h"
+#include "implicit/volumes/field_sharpness.h"
 #include "implicit/volumes/iso_surface.h"
 #include "implicit/volumes/unsigned_field.h"
 #include "io/vdb/volume_readers.h"

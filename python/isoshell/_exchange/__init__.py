@@ -11,6 +11,7 @@ from .._errors import Error, words_of
 from .._isoshell import ErrorCode
 
 PACKAGES = {  # of a module: what to install
+    "gmsh": "fill",
     "h5py": "meshio",
     "meshio": "meshio",
     "nibabel": "nibabel",
@@ -18,6 +19,7 @@ PACKAGES = {  # of a module: what to install
     "lxml": "trimesh",
     "pymeshlab": "pymeshlab",
     "pyvista": "pyvista",
+    "tetgen": "fill",
     "trimesh": "trimesh",
 }
 TAKERS = {  # of what a class comes from: the module here that takes its objects

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "implicit/volumes/iso_cases.h"
 #include "implicit/volumes/scalar_field.h"
@@ -44,6 +45,26 @@ inline void read_cell_window(const ScalarField& field, Voxel block, float* windo
     const int at = (n >> 2) * 8 * kWindowStride[0] + (n >> 1 & 1) * 8 * kWindowStride[1] + (n & 1) * 8;
     field.copy(block_beside(block, n, kFieldBlock), size, window + at);
   }
+}
+
+/// The value at a corner of a cell of a window.
+inline float at_corner(const float* cell, int corner) {
+  return cell[window_index((corner >> 2) << 6 | (corner >> 1 & 1) << 3 | (corner & 1))];
+}
+
+/// Whether a value of a cell is not known.
+inline bool has_unknown(const float* cell) {
+  for (int c = 0; c < 8; ++c)
+    if (std::isnan(at_corner(cell, c))) return true;
+  return false;
+}
+
+/// Whether the known values of a cell lie on both sides of the surface.
+inline bool has_both_sides(const float* cell, Inside is_inside) {
+  bool inside = false, outside = false;
+  for (int c = 0; c < 8; ++c)
+    if (const float value = at_corner(cell, c); !std::isnan(value)) (is_inside(value) ? inside : outside) = true;
+  return inside && outside;
 }
 
 /// Which points of a window lie inside: 1, others 0.

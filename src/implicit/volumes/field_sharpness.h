@@ -1,4 +1,4 @@
-// Whether a field's surface is one of sharp sides, said by the bends of the cells that it crosses.
+// What the cells that a field's surface crosses say of it: whether its sides are sharp, and where values jump.
 #pragma once
 
 #include <vector>
@@ -21,5 +21,14 @@ struct BentCells {
 /// Around the creases of sharp bodies few cells are bent, and many of these are so by much; on smooth bodies that are
 /// bent as much anywhere, most are bent by less. Densities are bent everywhere.
 bool is_sharp(const std::vector<BentCells>& of_blocks);
+
+/// Distances jump to the value of the background at the end of a band that is there on one side of a surface alone, and
+/// where a grid was clipped. Result: the largest difference between neighbours that is no jump, about twice as much as
+/// the field rises a voxel in the less steep quarter of the cells that the surface crosses. 0 where nothing crosses, or
+/// nearly all of it jumps: then values are no distances. Cost: two passes over the blocks.
+double most_rise_of(const ScalarField& field, Inside inside);
+
+/// Whether a field jumps along an edge of a cell of a window.
+bool jumps_in_cell(const float* corner, double most_rise, double background);
 
 }  // namespace isoshell

@@ -14,7 +14,6 @@
 #include "implicit/volumes/cell_blocks.h"
 #include "implicit/volumes/crease_intersections.h"
 #include "implicit/volumes/crease_vertices.h"
-#include "implicit/volumes/field_jumps.h"
 #include "implicit/volumes/field_sharpness.h"
 #include "implicit/volumes/sharpened_field.h"
 #include "implicit/volumes/tile_borders.h"
@@ -161,20 +160,8 @@ class IsoSurface {
   bool is_known(Voxel cell, const float* corner) const {
     const bool is_at_side = field_.sides && !field_.sides->hold_cell(cell);
     if (is_at_side && !field_.sides->are_closed) return false;
-    for (int c = 0; c < 8; ++c)
-      if (std::isnan(corner[window_index((c >> 2) << 6 | (c >> 1 & 1) << 3 | (c & 1))])) return false;
-    return is_at_side || !field_.opens_at_jumps || !jumps(corner);
+    return !has_unknown(corner) && (is_at_side || !field_.opens_at_jumps || !jumps(corner));
   }
-  /// Whether the surface crosses a cell: what is not known is on neither side of it.
-  bool is_crossed(const float* corner) const {
-    bool has_inside = false, has_outside = false;
-    for (int c = 0; c < 8; ++c) {
-      const float value = corner[window_index((c >> 2) << 6 | (c >> 1 & 1) << 3 | (c & 1))];
-      if (!std::isnan(value)) (inside_(value) ? has_inside : has_outside) = true;
-    }
-    return has_inside && has_outside;
-  }
-
   /// Calls visit as each_cut_cell does, for cells in which the surface is known.
   template <class Points, class Visit>
   void each_known_cell(size_t b, const float* window, const Points& points, Visit visit) const {
@@ -200,7 +187,7 @@ class IsoSurface {
       ++cell.cells;
       cell.jumps += !is_at_side && jumps(corner) ? 1 : 0;
       if (!is_known(cell_at(b, offset), corner)) {
-        if (!is_at_side && is_crossed(corner) && cell.unknown_cells++ == 0) cell.first_unknown = offset;
+        if (!is_at_side && has_both_sides(corner, inside_) && cell.unknown_cells++ == 0) cell.first_unknown = offset;
         return;
       }
       if (rise_ > 0 && !creases_ && !is_at_side) bent_[b].add(corner, rise_);
