@@ -178,6 +178,16 @@ def test_a_surface_that_reaches_the_sides_of_its_array_may_stay_open_there():
     assert made.vertices[:, 2].min() > 7
 
 
+@pytest.mark.parametrize("seed", [32, 33])
+def test_intersections_that_angles_end_once_they_are_widened_are_none(seed):
+    rng = np.random.default_rng(seed)
+    count = int(rng.choice([1500, 3000, 6000]))
+    turn, radius = rng.uniform(0, 2 * np.pi, count), 3 + 27 * rng.uniform(0, 1, count)**2
+    ground = np.c_[radius * np.cos(turn), radius * np.sin(turn), 0.02 * rng.normal(size=count)].round(4)
+    made = isoshell.remesh(isoshell.Points(ground), vertices=200, boundary="keep", device="cpu")
+    assert made.report["topology"]["boundary_loops"] == 1 and made.report["topology"]["self_intersections"] == 0
+
+
 def test_values_that_are_no_numbers_leave_the_surface_open_beside_them():
     values, spacing, origin = ball_values()
     values[:, :, 12:] = np.nan

@@ -21,6 +21,7 @@
 #include "isoshell/mesh_topology.h"
 #include "isoshell/readable.h"
 #include "measure/crossing_corners.h"
+#include "measure/crossings.h"
 #include "pipeline/grid/attempt.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
@@ -195,6 +196,18 @@ MeshOfPatches mesh_begun_cold(const MeshOfPatches& failed, const PreparedSurface
   return mesh_of_patches(p, p.cut, made, in_patches, report, context);
 }
 
+/// Of the mesh as it is: widening angles may have ended some that its patches had.
+void tell_intersections(const DualMesh& mesh, const LatticeFrame& frame, RemeshReport& report, Context& context) {
+  const auto crossings =
+      int64_t(crossing_pairs(mesh.position.view(), mesh.triangles.view(), {}, context.cancel).size());
+  report.optimize.self_intersections = crossings;
+  if (crossings == 0) return;
+  report.intersection_at = frame.to_world(crossing_corners(mesh, {}).front());
+  report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
+                            ", near " + readable_place(*report.intersection_at, frame) +
+                            ", where the input's own triangles do");
+}
+
 /// From the curves on the sheet, which has no bad place, and from new seeds.
 MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const PreparedSurface& p, PatchOptions in_patches,
                                     SeededMesh& made, RemeshReport& report, Context& context) {
@@ -276,13 +289,8 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetW
   }
   const CutSurface& cut = *made_here.cut;
   TriangleMesh& mesh = made_here.mesh;
-  if (const int64_t crossings = report.optimize.self_intersections; crossings > 0) {
-    const PointQ8 at = crossing_corners(made_here.joined.mesh, {}).front();
-    report.intersection_at = p.surface.frame.to_world(at);
-    report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
-                              ", near " + readable_place(*report.intersection_at, p.surface.frame) +
-                              ", where the input's own triangles do");
-  }
+  if (report.optimize.self_intersections > 0)
+    tell_intersections(made_here.joined.mesh, p.surface.frame, report, context);
   report.count.why = "its curves need them, or leave no room for more";
   warn_of_left_alone(made_here.joined.left_alone, report);
   if (cut.source->is_sheet) {

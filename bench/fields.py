@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""Fields that reach the sides of their arrays, clouds of open surfaces, and tetrahedra in regions.
+
+    python3 bench/fields.py [LABELS.npz ...]
+
+Prints three tables. Fields are a gyroid over two periods, whose volume is known, with sides of each kind. Clouds are random
+points of surfaces of known area, with borders kept. The third fills the regions of volumes of labels (arrays `labels` of
+the files, and 40 of regions/region_volumes.py) by TetGen and Gmsh. CPU seconds are of one thread.
+"""
+import pathlib
+import sys
+import time
+import warnings
+
+import isoshell
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "regions"))
+from region_volumes import RANDOM_VOLUMES, random_labels  # noqa: E402
+
+
+def measured(source, **options):
+    start = time.process_time()
+    made = isoshell.remesh(source, threads=1, **options)
+    return made, time.process_time() - start
+
+
+def area_of(made):
+    a, b, c = (made.vertices[made.faces[:, i]] for i in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+
+
+def volume_of(made):
+    a, b, c = (made.vertices[made.faces[:, i]] for i in range(3))
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+def row(*cells):
+    print("| " + " | ".join(str(cell) for cell in cells) + " |", flush=True)
+
+
+def fields():
+    row("gyroid of 64^3, vertices", "sides", "volume, of what is true", "farthest from its box, voxels", "Q",
+        "least angle", "below 30 degrees", "CPU s")
+    row(*["---"] * 8)
+    at = np.linspace(0, 4 * np.pi, 64)
+    x, y, z = np.meshgrid(at, at, at, indexing="ij")
+    values = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+    for sides, longer in (("sample", 0), ("cell", at[1])):
+        for vertices in (4000, 10_000, 20_000):
+            made, seconds = measured(isoshell.Volume(values, at[1], sides=sides), iso=0, vertices=vertices)
+            box = np.array([-longer / 2, 4 * np.pi + longer / 2])
+            off = np.abs(np.stack([made.vertices.min(0), made.vertices.max(0)]) - box[:, None]).max() / at[1]
+            quality = made.report["quality"]
+            row(vertices, sides, f"{volume_of(made) / ((4 * np.pi + longer)**3 / 2):.5f}", f"{off:.3f}",
+                f"{quality['q_avg']:.3f}", f"{quality['theta_min_deg']:.1f}", quality["below_30_deg"], f"{seconds:.1f}")
+
+
+def clouds():
+    rng = np.random.default_rng(3)
+    square, over = rng.uniform(0, 1, (20_000, 2)), rng.uniform(0, 180, (30_000, 2))
+    wall, zero = rng.uniform(0, 4, (8000, 2)), np.zeros(8000)
+    ball = rng.normal(size=(20_000, 3))
+    ball /= np.linalg.norm(ball, axis=1)[:, None]
+    turn, radius = rng.uniform(0, 2 * np.pi, 40_000), 3 + 27 * rng.uniform(0, 1, 40_000)**2
+    height = 8 * np.sin(over[:, 0] / 20) * np.cos(over[:, 1] / 25)
+    slope = np.hypot(*np.gradient(8 * np.sin(np.linspace(0, 9, 721))[:, None] * np.cos(np.linspace(0, 7.2, 721)), 0.25))
+    cases = {
+        "square": (np.c_[square, np.zeros(20_000)], 1),
+        "square, noisy": (np.c_[square, 0.002 * rng.normal(size=20_000)], 1),
+        "terrain of 180 m": (np.c_[over, height + 0.1 * rng.normal(size=30_000)], 180**2 * np.hypot(1, slope).mean()),
+        "corner of a room": (np.r_[np.c_[wall, zero], np.c_[zero, wall], np.c_[wall[:, 0], zero, wall[:, 1]]], 48),
+        "ball, whole": (ball, 4 * np.pi),
+        "ball above -.2": (ball[ball[:, 2] > -0.2], 2.4 * np.pi),
+        "scan of the ground": (np.c_[radius * np.cos(turn), radius * np.sin(turn), 0.02 * rng.normal(size=40_000)],
+                               np.pi * 900),
+    }
+    print()
+    row("cloud, 4000 vertices", "area closed, of what is true", "with borders kept", "components", "loops", "Q",
+        "least angle", "CPU s")
+    row(*["---"] * 8)
+    for name, (points, area) in cases.items():
+        closed, _ = measured(isoshell.Points(points), vertices=4000)
+        made, seconds = measured(isoshell.Points(points), vertices=4000, boundary="keep")
+        topology, quality = made.report["topology"], made.report["quality"]
+        row(name, f"{area_of(closed) / area:.2f}", f"{area_of(made) / area:.3f}", topology["components"],
+            topology["boundary_loops"], f"{quality['q_avg']:.3f}", f"{quality['theta_min_deg']:.1f}", f"{seconds:.1f}")
+
+
+def fill(paths):
+    print()
+    row("labels, vertices", *(f"{mesher}: tetrahedra, wall s" for mesher in ("tetgen", "gmsh")))
+    row(*["---"] * 3)
+    for path in paths:
+        for vertices in (6000, 20_000):
+            made, _ = measured(isoshell.Labels(np.load(path)["labels"]), vertices=vertices)
+            row(f"{pathlib.Path(path).stem}, {vertices}", *(filled_by(made, mesher) for mesher in ("tetgen", "gmsh")))
+    refused = {"tetgen": 0, "gmsh": 0}
+    numbers = range(0, RANDOM_VOLUMES, 5)
+    for number in numbers:
+        made, _ = measured(isoshell.Labels(random_labels(number)), vertices=1500)
+        for mesher in refused:
+            refused[mesher] += filled_by(made, mesher).startswith("refused")
+    row(f"{len(numbers)} random volumes, 1500", *(f"{count} refused" for count in refused.values()))
+
+
+def filled_by(made, mesher):
+    start = time.time()
+    try:
+        filled = made.fill(mesher)
+    except isoshell.Error as error:
+        return f"refused: {error}"
+    return f"{len(filled.tetrahedra)}, {time.time() - start:.1f}"
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore", isoshell.RunWarning)
+    fields()
+    clouds()
+    fill(sys.argv[1:])
