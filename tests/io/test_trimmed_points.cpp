@@ -1,6 +1,7 @@
 // Clouds of open surfaces, which have borders where borders are kept.
 #include <cmath>
 
+#include "geometry/world_vector.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
 #include "isoshell/io/point_file.h"
@@ -54,6 +55,10 @@ TEST_CASE("trimmed points: a sheet has one border and the area of its points, no
       CHECK(area_of(open) > truth);
       CHECK(area_of(open) < 1.12 * truth);
       CHECK(area_of(closed) > 2 * truth);
+      double up = 0;  // the sheet seen from above
+      for (const auto& [a, b, c] : open.triangles)
+        up += doubled_area(open.vertices[a], open.vertices[b], open.vertices[c]).z / 2;
+      CHECK(up > .9);
     }
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr size_t kFitNeighbours = 16;    // of the plane that gives a normal
 constexpr size_t kGraphNeighbours = 10;  // of the spanning tree
+constexpr double kFlatPart = 0.05;       // of the volume of points that look straight away from their middle
 constexpr size_t kSpacingNeighbour = 6;  // of random points on a plane the sixth is 1.4 mean spacings away
 constexpr double kSpacingFactor = 0.7071067811865476;
 constexpr double kAreaFactor = 0.5235987755982988;  // pi / 6: a disk of that radius holds six
@@ -149,21 +150,41 @@ class Orientation {
     }
   }
 
-  /// Turns each part as a whole so that the volume it bounds, closed by a cone to its middle, is positive.
+  /// What the points of a part, or all, say of where its outside is.
+  struct Sum {
+    double area = 0, volume = 0, most_volume = 0;
+    WorldPoint middle{0, 0, 0}, normal{0, 0, 0};
+
+    bool is_flat() const { return std::abs(volume) < kFlatPart * most_volume; }
+  };
+
+  /// Turns each part as a whole so that the volume it bounds, closed by a cone to its middle, is positive. A flat one
+  /// bounds none: it looks away from the middle of all points, as a side of a box does, or up where they are flat, too.
   void point_outward() {
     uint32_t parts = 0;
     for (const uint32_t part : part_) parts = std::max(parts, part + 1);
-    std::vector<WorldPoint> middle(parts, {0, 0, 0});
-    std::vector<double> area(parts, 0), volume(parts, 0);
+    std::vector<Sum> sums(parts), from_all(parts);
+    Sum all;
     for (size_t i = 0; i < part_.size(); ++i) {
-      middle[part_[i]] = middle[part_[i]] + p_.area[i] * p_.position[i];
-      area[part_[i]] += p_.area[i];
+      for (Sum* sum : {&sums[part_[i]], &all}) {
+        sum->middle = sum->middle + p_.area[i] * p_.position[i];
+        sum->area += p_.area[i];
+      }
     }
-    for (uint32_t k = 0; k < parts; ++k) middle[k] = (area[k] > 0 ? 1 / area[k] : 0) * middle[k];
+    for (Sum& sum : sums) sum.middle = (sum.area > 0 ? 1 / sum.area : 0) * sum.middle;
+    for (Sum& sum : from_all) sum.middle = (all.area > 0 ? 1 / all.area : 0) * all.middle;
     for (size_t i = 0; i < part_.size(); ++i)
-      volume[part_[i]] += p_.area[i] * dot(p_.normal[i], p_.position[i] - middle[part_[i]]);
-    for (size_t i = 0; i < part_.size(); ++i)
-      if (volume[part_[i]] < 0) p_.normal[i] = -1 * p_.normal[i];
+      for (Sum* sum : {&sums[part_[i]], &from_all[part_[i]]}) {
+        const WorldPoint away = p_.position[i] - sum->middle;
+        sum->volume += p_.area[i] * dot(p_.normal[i], away);
+        sum->most_volume += p_.area[i] * length(away);
+        sum->normal = sum->normal + p_.area[i] * p_.normal[i];
+      }
+    for (size_t i = 0; i < part_.size(); ++i) {
+      const Sum &own = sums[part_[i]], &whole = from_all[part_[i]];
+      const double outward = !own.is_flat() ? own.volume : !whole.is_flat() ? whole.volume : own.normal.z;
+      if (outward < 0) p_.normal[i] = -1 * p_.normal[i];
+    }
   }
 
   OrientedPoints& p_;
