@@ -76,7 +76,7 @@ def run(words: list[str]) -> int:
         try:
             if len(places) != 2 and not (options.get("dry_run") and len(places) == 1):
                 raise Error(f"{len(places)} names of files; give INPUT and OUTPUT", stage="command line")
-            _check(options)
+            _check(places, options)
             if "frames" in options:
                 return _run_frames(places, options)
             _run(places, options)
@@ -92,7 +92,7 @@ def run(words: list[str]) -> int:
     return 0
 
 
-def _check(options: dict[str, Any]) -> None:
+def _check(places: list[str], options: dict[str, Any]) -> None:
     missing = [name for name, value in options.items() if value == ""]
     if missing:
         raise Error(f"--{missing[0].replace('_', '-')} needs a value", stage="command line")
@@ -101,7 +101,7 @@ def _check(options: dict[str, Any]) -> None:
     if "fill" in options:
         if "frames" in options:
             raise Error("--fill is for one mesh; leave out --frames and name a frame", stage="command line")
-        check_target(options["fill"], bool(options.get("force")))
+        check_target(options["fill"], bool(options.get("force")), [("OUTPUT", place) for place in places[1:2]])
     alone = [name for name in OF_FRAMES if name in options and "frames" not in options]
     if alone:
         raise Error(f"--{alone[0].replace('_', '-')} needs --frames", stage="command line")
@@ -110,6 +110,7 @@ def _check(options: dict[str, Any]) -> None:
 def _run(places: list[str], options: dict[str, Any]) -> None:
     start = time.perf_counter()
     options.setdefault("progress", "auto")
+    to_fill = options.pop("fill", None)
     if options.pop("dry_run", False):
         found = estimate(places[0], **options)
         _tell("estimate: " + ", ".join(f"{name} {value}" for name, value in found.items()))
@@ -117,7 +118,6 @@ def _run(places: list[str], options: dict[str, Any]) -> None:
             print(json.dumps({"schema": 1, "version": VERSION, "estimate": found}, indent=2))
         return
     result: Optional[Result] = None
-    to_fill = options.pop("fill", None)
     try:
         result = remesh(places[0], output=places[1], **options)
         if to_fill is not None:

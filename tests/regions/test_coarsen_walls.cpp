@@ -23,17 +23,25 @@ struct Coarse {
   int64_t before = 0;  ///< vertices
 };
 
-Coarse coarsened(const LabelVolume& volume, int64_t vertices, Context& context) {
+PreparedSurface prepared(const LabelVolume& volume, int64_t vertices, Context& context) {
   RemeshOptions options;
   options.vertices = vertices;
   RemeshReport report;
-  const PreparedSurface p = prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
+  return prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
+}
+
+WallMesh walls_of(const PreparedSurface& p) {
   const FeatureMesh& walls = p.walls->mesh;
-  WallMesh mesh(*p.cut, {walls.triangles, walls.source_face, walls.vertices.size()});
+  return {*p.cut, {walls.triangles, walls.source_face, walls.vertices.size()}};
+}
+
+Coarse coarsened(const LabelVolume& volume, int64_t vertices, Context& context) {
+  const PreparedSurface p = prepared(volume, vertices, context);
+  WallMesh mesh = walls_of(p);
   coarsen_walls(mesh, vertices, context);
   const auto lookup = mesh.shared_lookup();
   Coarse out{PatchMesh(lookup, std::move(mesh), {vertices}).joined(), {}, 0};
-  out.before = int64_t(walls.vertices.size());
+  out.before = int64_t(p.walls->mesh.vertices.size());
   out.regions.background = volume.background;
   const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(*p.cut);
   for (const uint32_t patch : out.joined.features.patch) out.regions.labels.push_back(labels[patch]);
@@ -89,11 +97,7 @@ TEST_CASE("coarsened walls are the same with any number of threads, and so are t
 TEST_CASE("walls that bend nearer to one another than half an edge are coarsened without being relaxed before") {
   TestContext context;
   const auto share = [&](const LabelVolume& volume, int64_t vertices) {
-    RemeshOptions options;
-    options.vertices = vertices;
-    RemeshReport report;
-    return share_of_near_walls(*prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context).cut,
-                               vertices);
+    return share_of_near_walls(*prepared(volume, vertices, context).cut, vertices);
   };
   const auto waves = [](int32_t n) {
     return label_volume(n, n, 24, [](int i, int j, int k) {
@@ -157,12 +161,8 @@ TEST_CASE("where walls keep more vertices than were asked for, none of their edg
   for (uint32_t number = 0; number < 200; number += 3) {
     const LabelVolume volume = random_labels(number);
     if (pairs_of(volume).empty()) continue;
-    RemeshOptions options;
-    options.vertices = kFew;
-    RemeshReport report;
-    const PreparedSurface p = prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
-    const FeatureMesh& walls = p.walls->mesh;
-    WallMesh mesh(*p.cut, {walls.triangles, walls.source_face, walls.vertices.size()});
+    const PreparedSurface p = prepared(volume, kFew, context);
+    WallMesh mesh = walls_of(p);
     coarsen(mesh, kFew, context);
     if (mesh.vertex_count() <= kFew) continue;
     ++more;

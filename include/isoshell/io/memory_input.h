@@ -32,11 +32,11 @@ struct DenseVolume {
 
 /// The surface of a volume as read_volume extracts it, from values that no file gives a class. Without an isovalue they
 /// are signed distances where some are negative, and otherwise unsigned ones if they rise as such. The space beyond
-/// the array is outside. With an isovalue, the side of it that most values at the array's faces lie on is outside, too;
-/// without one the positive side. Where the body reaches a face, it ends as options.sides says. Values that are NaN are
-/// not known: beside them the surface is open. Throws: usage for an array without values or with
-/// a spacing that is not above 0; unreadable_input for an infinite value;
-/// nothing_to_mesh where none is a number; and as read_volume does.
+/// the array is outside. With an isovalue, the side of it that most values at the array's faces lie on is outside, too,
+/// or of a mask the lower one; without one the positive side. Where the body reaches a face, it ends as options.sides
+/// says. Values that are NaN are not known: beside them the surface is open. Throws: usage for an array without values
+/// or with a spacing that is not above 0; unreadable_input for an infinite value; nothing_to_mesh where none is a
+/// number; and as read_volume does.
 TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info);
 

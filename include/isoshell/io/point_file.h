@@ -49,12 +49,13 @@ struct PointSurfaceInfo {
 /// from one side is closed on its back, and hollows are left out but where the points' own normals look into them.
 /// Normals that are missing, or that stand on the planes of their neighbours no more than any would, or badly where
 /// those are flat, are estimated from neighbours, those that disagree are turned along a spanning tree, and all of them
-/// so that they point away from the middle. Up to a tenth of the points is left out where they lie several times as far
-/// from their neighbours as others do. Where creases are wanted and the points are those of a sharp body, no more than
-/// a tenth of their spacing off its sides, the surface is where the distance from these sides is 0, with vertices on
-/// their creases. `keep_open`: what is twice as far from points as these are from one another is left out, with a
-/// border. The same for any number of threads. Cost: 13 bytes a voxel of the points' box. Throws: nothing_to_mesh for
-/// fewer than four different points, out_of_memory over `memory_limit_bytes`, if above 0.
+/// so that they point away from the middle, or up where the points are flat. Up to a tenth of the points is left out
+/// where they lie several times as far from their neighbours as others do. Where creases are wanted and the points are
+/// those of a sharp body, no more than a tenth of their spacing off its sides, the surface is where the distance from
+/// these sides is 0, with vertices on their creases. `keep_open`: what is twice as far from points as these are from
+/// one another is left out, with a border. The same for any number of threads. Cost: 13 bytes a voxel of the points'
+/// box. Throws: nothing_to_mesh for fewer than four different points, and where keep_open leaves nothing; out_of_memory
+/// over `memory_limit_bytes`, if above 0.
 TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_bytes, PointSurfaceInfo& info,
                                VolumeCreases creases = VolumeCreases::none, bool keep_open = false);
 

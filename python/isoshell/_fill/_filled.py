@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 import tempfile
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Sequence
 
 from .. import _isoshell
 from .._errors import Error, words_of
@@ -87,8 +87,8 @@ class Filled:
         return f"<isoshell.Filled: {len(self.vertices)} vertices, {len(self.tetrahedra)} tetrahedra>"
 
 
-def check_target(path: str, overwrite: bool) -> str:
-    """Before a run: the ending of a file, which tetrahedra could be written to.
+def check_target(path: str, overwrite: bool, others: Sequence[tuple[str, str]] = ()) -> str:
+    """Before a run: the ending of a file, which tetrahedra could be written to beside others of the run.
 
     Raises:
         Error: of code UNWRITABLE_OUTPUT or USAGE.
@@ -96,7 +96,7 @@ def check_target(path: str, overwrite: bool) -> str:
     ending = os.path.splitext(path)[1][1:].lower()
     if ending not in ENDINGS:
         raise Error(f"{path}: tetrahedra are written as .{', .'.join(ENDINGS)}", stage="options")
-    _isoshell.check_output_files([("the tetrahedra", path)], [], overwrite, "")
+    _isoshell.check_output_files([("the tetrahedra", path), *others], [], overwrite, "")
     return ending
 
 

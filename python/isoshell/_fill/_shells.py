@@ -32,17 +32,24 @@ def parts_of(result: Result) -> list[Part]:
 
     background = result.regions["background"]
     labels = np.setdiff1d(result.regions["labels"], background).tolist()
-    numbers = {row.tobytes(): number for number, row in enumerate(np.ascontiguousarray(result.vertices) + 0.0)}
+    numbers = {row.tobytes(): number for number, row in enumerate(_without_signs_of_zero(result.vertices))}
     if not labels and not _is_closed(result.faces):
         raise Error("the mesh is open, and encloses nothing that could be filled; close its borders", stage="fill")
     parts = []
     for label in labels or [1]:
         mesh: Any = result.region(label) if labels else result  # where a region touches itself its sheets are apart
-        corners = np.array([numbers[row.tobytes()] for row in np.ascontiguousarray(mesh.vertices) + 0.0], np.int64)
+        corners = np.array([numbers[row.tobytes()] for row in _without_signs_of_zero(mesh.vertices)], np.int64)
         shells = [corners[faces] for faces in _connected(np.asarray(mesh.faces), len(mesh.vertices))]
         name = mesh.name if labels else "the mesh"
         parts += [Part(label, name, nested) for nested in _nested(result.vertices, shells, name)]
     return parts
+
+
+def _without_signs_of_zero(vertices: Array) -> Array:
+    """Places that are the same have the same bytes."""
+    import numpy as np
+
+    return np.ascontiguousarray(vertices) + 0.0
 
 
 def volume_of(vertices: Array, faces: Array) -> float:

@@ -84,3 +84,7 @@ def test_the_command_fills_what_it_writes(tmp_path, ball):
     assert len(meshio.read(tmp_path / "full.vtu").cells_dict["tetra"]) > 300
     assert remesh([*words, "--force", f"--fill={tmp_path / 'full.stl'}"]) == 2
     assert remesh([*words, "--force", "--fill", str(tmp_path / "full.vtu")]) == 0
+    assert remesh([*words, "--force", "--fill", str(tmp_path / "other.vtu"), "--dry-run"]) == 0
+    assert not (tmp_path / "other.vtu").exists()
+    same = [words[0], str(tmp_path / "same.vtu"), *words[2:], "--fill", str(tmp_path / "same.vtu")]
+    assert remesh(same) == 2 and not (tmp_path / "same.vtu").exists()

@@ -150,12 +150,23 @@ class Orientation {
     }
   }
 
-  /// What the points of a part, or all, say of where its outside is.
-  struct Sum {
-    double area = 0, volume = 0, most_volume = 0;
-    WorldPoint middle{0, 0, 0}, normal{0, 0, 0};
+  /// The volume that points of a part bound, closed by a cone to a middle.
+  struct Cone {
+    double volume = 0, most_volume = 0;  ///< most: of points that look straight away from the middle
 
+    void add(double area, const WorldPoint& normal, const WorldPoint& away) {
+      volume += area * dot(normal, away);
+      most_volume += area * length(away);
+    }
     bool is_flat() const { return std::abs(volume) < kFlatPart * most_volume; }
+  };
+  /// The mean of some points, each by its area.
+  struct Middle {
+    double area = 0;
+    WorldPoint sum{0, 0, 0};
+
+    void add(double a, const WorldPoint& p) { area += a, sum = sum + a * p; }
+    WorldPoint place() const { return (area > 0 ? 1 / area : 0) * sum; }
   };
 
   /// Turns each part as a whole so that the volume it bounds, closed by a cone to its middle, is positive. A flat one
@@ -163,26 +174,21 @@ class Orientation {
   void point_outward() {
     uint32_t parts = 0;
     for (const uint32_t part : part_) parts = std::max(parts, part + 1);
-    std::vector<Sum> sums(parts), from_all(parts);
-    Sum all;
-    for (size_t i = 0; i < part_.size(); ++i) {
-      for (Sum* sum : {&sums[part_[i]], &all}) {
-        sum->middle = sum->middle + p_.area[i] * p_.position[i];
-        sum->area += p_.area[i];
-      }
-    }
-    for (Sum& sum : sums) sum.middle = (sum.area > 0 ? 1 / sum.area : 0) * sum.middle;
-    for (Sum& sum : from_all) sum.middle = (all.area > 0 ? 1 / all.area : 0) * all.middle;
+    std::vector<Middle> middle(parts);
+    Middle of_all;
     for (size_t i = 0; i < part_.size(); ++i)
-      for (Sum* sum : {&sums[part_[i]], &from_all[part_[i]]}) {
-        const WorldPoint away = p_.position[i] - sum->middle;
-        sum->volume += p_.area[i] * dot(p_.normal[i], away);
-        sum->most_volume += p_.area[i] * length(away);
-        sum->normal = sum->normal + p_.area[i] * p_.normal[i];
-      }
+      for (Middle* m : {&middle[part_[i]], &of_all}) m->add(p_.area[i], p_.position[i]);
+    std::vector<Cone> own(parts), whole(parts);
+    std::vector<double> up(parts, 0);
     for (size_t i = 0; i < part_.size(); ++i) {
-      const Sum &own = sums[part_[i]], &whole = from_all[part_[i]];
-      const double outward = !own.is_flat() ? own.volume : !whole.is_flat() ? whole.volume : own.normal.z;
+      const uint32_t k = part_[i];
+      own[k].add(p_.area[i], p_.normal[i], p_.position[i] - middle[k].place());
+      whole[k].add(p_.area[i], p_.normal[i], p_.position[i] - of_all.place());
+      up[k] += p_.area[i] * p_.normal[i].z;
+    }
+    for (size_t i = 0; i < part_.size(); ++i) {
+      const uint32_t k = part_[i];
+      const double outward = !own[k].is_flat() ? own[k].volume : !whole[k].is_flat() ? whole[k].volume : up[k];
       if (outward < 0) p_.normal[i] = -1 * p_.normal[i];
     }
   }

@@ -15,9 +15,9 @@
 namespace isoshell {
 namespace {
 
-constexpr double kFar = 2;     // spacings; the noise of a scan is about one
-constexpr double kBeyond = 4;  // what no point looks the way of, in terms of what is far
-constexpr int kRounds = 10;
+constexpr double kFar = 2;             // spacings; the noise of a scan is about one
+constexpr double kBeyond = 4;          // what no point looks the way of, in terms of what is far
+constexpr int kRounds = 10;            // in which the distances are evened out
 constexpr size_t kNeighbours = 16;     // points among which one looks the surface's way
 constexpr double kEdgeEnd = 1. / 16;   // of an edge, which cuts keep away from its ends
 constexpr double kSmallestPiece = 30;  // squares of the spacing, of a piece that was cut off from others

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/watched.h"
+#include "geometry/make_one.h"
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
 #include "repair/regions/labels.h"
@@ -152,20 +153,6 @@ std::vector<uint8_t> walls_inside_of_cells(const Walls& walls, const Cells& cell
   return is_sheet;
 }
 
-/// Those that triangles have, in their order.
-void take_vertices(const std::vector<WorldPoint>& points, TriangleSoup& soup) {
-  std::vector<uint32_t> number(points.size(), 0);
-  for (const auto& t : soup.triangles)
-    for (const uint32_t v : t) number[v] = 1;
-  for (size_t v = 0; v < points.size(); ++v) {
-    if (number[v] == 0) continue;
-    number[v] = uint32_t(soup.vertices.size());
-    soup.vertices.push_back(points[v]);
-  }
-  for (auto& t : soup.triangles)
-    for (uint32_t& v : t) v = number[v];
-}
-
 /// The walls that stay, each behind the region with the smaller label, or else as its first face looks.
 TriangleSoup kept_walls(const Walls& walls, const Cells& cells, const CellLabels& labels,
                         const std::vector<uint8_t>& is_sheet) {
@@ -180,7 +167,8 @@ TriangleSoup kept_walls(const Walls& walls, const Cells& cells, const CellLabels
     soup.triangles.push_back(turns ? std::array<uint32_t, 3>{a, c, b} : walls.triangle[w]);
     soup.regions.labels.push_back({behind, front});
   }
-  take_vertices(walls.point, soup);
+  soup.vertices = walls.point;
+  drop_unused_vertices(soup);
   return soup;
 }
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Fields that reach the sides of their arrays, clouds of open surfaces, and tetrahedra in regions.
 
-    python3 bench/fields.py [LABELS.npz ...]
+    python3 bench/regions/fields.py [LABELS.npz|ASSEMBLY ...]
 
-Prints three tables. Fields are a gyroid over two periods, whose volume is known, with sides of each kind. Clouds are random
-points of surfaces of known area, with borders kept. The third fills the regions of volumes of labels (arrays `labels` of
-the files, and 40 of regions/region_volumes.py) by TetGen and Gmsh. CPU seconds are of one thread.
+Prints four tables. Fields are a gyroid over two periods, whose volume is known, with sides of each kind. Clouds are random
+points of surfaces of known area, with borders kept. The last fills regions by TetGen and Gmsh: those of volumes
+of labels (arrays `labels` of the files, and 40 of region_volumes.py) and of the components of meshes. CPU seconds are of one thread.
 """
 import pathlib
 import sys
@@ -14,9 +14,7 @@ import warnings
 
 import isoshell
 import numpy as np
-
-sys.path.insert(0, str(pathlib.Path(__file__).parent / "regions"))
-from region_volumes import RANDOM_VOLUMES, random_labels  # noqa: E402
+from region_volumes import RANDOM_VOLUMES, random_labels
 
 
 def measured(source, **options):
@@ -56,6 +54,26 @@ def fields():
                 f"{quality['q_avg']:.3f}", f"{quality['theta_min_deg']:.1f}", quality["below_30_deg"], f"{seconds:.1f}")
 
 
+def drop():
+    """A ball that falls onto a side of its array, frame by frame."""
+    at = np.arange(48.0)
+    x, y, z = np.meshgrid(at, at, at, indexing="ij")
+    fall = np.zeros((48, 48, 48, 3), np.float32)
+    fall[..., 2] = -1.2
+    frames = [isoshell.Volume(np.float32(np.hypot(np.hypot(x - 23.5, y - 23.5), z - 22 + 1.2 * k) - 10.3), velocities=fall)
+              for k in range(14)]
+    print()
+    row("a ball that falls onto a side, vertices", "edges kept from frame to frame, %", "least angle of all")
+    row(*["---"] * 3)
+    for vertices in (3000, 10_000):
+        kept, angles = [], []
+        with isoshell.remesh_sequence(frames, vertices=vertices) as made:
+            for result in made:
+                kept += [result.report["coherence"]["kept_edges_pct"]] if result.report["coherence"] else []
+                angles.append(result.report["quality"]["theta_min_deg"])
+        row(vertices, ", ".join(f"{value:.1f}" for value in kept if value is not None), f"{min(angles):.1f}")
+
+
 def clouds():
     rng = np.random.default_rng(3)
     square, over = rng.uniform(0, 1, (20_000, 2)), rng.uniform(0, 180, (30_000, 2))
@@ -93,7 +111,10 @@ def fill(paths):
     row(*["---"] * 3)
     for path in paths:
         for vertices in (6000, 20_000):
-            made, _ = measured(isoshell.Labels(np.load(path)["labels"]), vertices=vertices)
+            if path.endswith(".npz"):
+                made, _ = measured(isoshell.Labels(np.load(path)["labels"]), vertices=vertices)
+            else:
+                made, _ = measured(path, regions="components", vertices=vertices)
             row(f"{pathlib.Path(path).stem}, {vertices}", *(filled_by(made, mesher) for mesher in ("tetgen", "gmsh")))
     refused = {"tetgen": 0, "gmsh": 0}
     numbers = range(0, RANDOM_VOLUMES, 5)
@@ -116,5 +137,6 @@ def filled_by(made, mesher):
 if __name__ == "__main__":
     warnings.simplefilter("ignore", isoshell.RunWarning)
     fields()
+    drop()
     clouds()
     fill(sys.argv[1:])
