@@ -15,7 +15,6 @@
 #include "pipeline/grid/prepared_surface.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/patches/patches.h"
 #include "pipeline/patches/sheet_when_needed.h"
 #include "pipeline/regions/region_walls.h"
@@ -54,90 +53,65 @@ void check_area(const InputTopology& input) {
 
 /// False when a refinement does not fit the memory limit, which is only worth a warning. Throws when nothing was made
 /// yet.
-bool memory_allows(const RunEstimate& estimate, bool refining, RemeshReport& report, const Context& context) {
-  if (context.memory_limit_bytes <= 0 || estimate.bytes <= context.memory_limit_bytes) {
-    report.grid.memory_estimate_bytes = std::max(report.grid.memory_estimate_bytes, estimate.bytes);
+bool memory_allows(const RunEstimate& estimate, bool refining, Run& run) {
+  const int64_t limit = run.context.memory_limit_bytes;
+  if (limit <= 0 || estimate.bytes <= limit) {
+    run.memory_estimate_bytes = std::max(run.memory_estimate_bytes, estimate.bytes);
     return true;
   }
-  const std::string what = over_memory_limit(estimate, context.memory_limit_bytes);
+  const std::string what = over_memory_limit(estimate, limit);
   if (!refining) throw Error(ErrorCode::out_of_memory, "memory", what);
-  report.warnings.push_back("the grid was not refined further: " + what);
+  run.warn("the grid was not refined further: " + what);
   return false;
 }
 
-void note_digests(const PreparedSurface& p, RemeshReport& report, Context& context) {
-  const RemeshOptions& options = p.options;
-  note_digest(options, report, context, "surface", p.surface);
+void note_digests(const PreparedSurface& p, Run& run) {
+  run.note_digest("surface", p.surface);
   if (!has_sheet(p)) return;
-  note_digest(options, report, context, "sites", p.sites);
-  note_digest(options, report, context, "samples", p.samples);
-  note_digest(options, report, context, "sheet", p.sheet);
+  run.note_digest("sites", p.sites);
+  run.note_digest("samples", p.samples);
+  run.note_digest("sheet", p.sheet);
 }
 
-void report_surface(const PreparedSurface& p, RemeshReport& report) {
-  report.input.topology = p.surface.topology;
-  report.grid.frame = p.surface.frame;
-  report.grid.band_vox = p.options.band_vox;
-  report_sheet(p, report);
+void report_surface(PreparedSurface& p) {
+  p.report.input.topology = p.surface.topology;
+  p.report.grid.frame = p.surface.frame;
+  p.report.grid.band_vox = p.options.band_vox;
+  report_sheet(p);
 }
 
-void finish(PreparedSurface& p, const PatchSource& source, RemeshReport& report, Context& context) {
+void finish(PreparedSurface& p, const PatchSource& source, Run& run) {
   const RemeshOptions& options = p.options;
   if (options.want_shell || options.method == Method::shell) {
-    p.shell = timed(report, "shell", context, [&] { return build_shell(p.sites, {options.band_vox}, context); });
-    report.grid.active_voxels = p.shell.voxels.voxel_count();
-    report.grid.leaves = p.shell.voxels.leaf_count();
-    note_digest(options, report, context, "shell", p.shell);
+    p.shell = run.timed("shell", [&] { return build_shell(p.sites, {options.band_vox}, run.context); });
+    p.report.grid.active_voxels = p.shell.voxels.voxel_count();
+    p.report.grid.leaves = p.shell.voxels.leaf_count();
+    run.note_digest("shell", p.shell);
   }
-  report_surface(p, report);
-  for (std::string& text : timed(report, "lengths", context, [&] { return set_lengths(p, context); }))
-    report.warnings.push_back(std::move(text));
-  if (wants_lengths(options)) report.coherence.why_cold = choose_beginning(p);
-  cut_into_patches(source, p, report, context);
-  note_digests(p, report, context);
+  report_surface(p);
+  for (std::string& text : run.timed("lengths", [&] { return set_lengths(p, run.context); })) run.warn(std::move(text));
+  if (wants_lengths(options)) p.report.coherence.why_cold = choose_beginning(p);
+  cut_into_patches(source, p, run);
+  note_digests(p, run);
 }
 
-/// Width of the smallest cells that the lengths ask for, as far as the grid that even cells would have carries them.
-/// They are looked for on that grid, but curvature asks for the smallest ones anyway. None where lengths are even.
-std::optional<double> smallest_cell_world(const TriangleSoup& soup, const Plan& plan, const LatticeFrame& usual,
-                                          RemeshReport& report, Context& context) {
-  if (plan.options.adaptivity > 0) return kFewestCellVox * usual.voxel_size;
-  LatticeSurface surface = timed(report, "snap", context, [&] { return snap_surface(soup, usual, context); });
-  surface.topology = plan.input;
-  PreparedSurface p =
-      prepare_surface(std::move(surface), requested_closing(plan, usual), plan.options, report, context);
-  timed(report, "lengths", context, [&] { set_lengths(p, context); });
-  if (p.sheet.lengths.at.empty()) return {};
-  return smallest_cell_vox(p, context) * usual.voxel_size;
-}
-
-/// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.
-int32_t resolution_for_lengths(const TriangleSoup& soup, const Plan& plan, int32_t usual, RemeshReport& report,
-                               Context& context) {
-  memory_allows(estimate_plan(plan, soup, usual), false, report, context);
-  const LatticeFrame frame = LatticeFrame::around(plan.box.min, plan.box.max, usual);
-  const std::optional<double> cell_world = smallest_cell_world(soup, plan, frame, report, context);
-  if (!cell_world) return usual;
-  int32_t resolution = resolution_for_cell(frame.voxel_size * (usual - 1), *cell_world, plan.target.vertices);
-  while (resolution > usual && context.memory_limit_bytes > 0 &&
-         estimate_plan(plan, soup, resolution).bytes > context.memory_limit_bytes)
-    resolution = std::max(usual, resolution - resolution / 8);
-  return resolution;
+Prepared held(PreparedSurface p, Run& run) {
+  run.exchange_log(p.report);
+  return PreparedParts::hold(std::move(p));
 }
 
 /// Sheets of a surface on finer and finer grids.
 class GridSearch {
  public:
   /// The soup is that of `source`, repaired.
-  GridSearch(const TriangleSoup& soup, const Plan& plan, const PatchSource& source, RemeshReport& report,
-             Context& context)
-      : soup_(soup), plan_(plan), source_(source), report_(report), context_(context) {}
+  GridSearch(const TriangleSoup& soup, const Plan& plan, const PatchSource& source, Run& run)
+      : soup_(soup), plan_(plan), source_(source), run_(run), context_(run.context) {}
 
   /// The coarsest grid whose sheet has the input's topology, or the one that comes nearest.
   PreparedSurface best_grid() {
     const int32_t by_area = plan_.first_resolution(), usual = resolution_for_needle(by_area);
     const int32_t first = plan_.chooses_grid() && wants_lengths(plan_.options) && usual == by_area
-                              ? resolution_for_lengths(soup_, plan_, usual, report_, context_)
+                              ? resolution_for_lengths(usual)
                               : usual;
     // Where the vertices cannot show the input's topology, a finer grid only brings more parts for them to miss.
     const bool reachable = can_compare(plan_.input) && shows_all_parts(plan_.target.vertices, plan_.input);
@@ -164,33 +138,58 @@ class GridSearch {
         best = std::move(*p);
       }
     }
-    finish(best, source_, report_, context_);
-    if (!is_on_own_triangles(best)) warn_of_topology(best, plan_.input, report_);
+    finish(best, source_, run_);
+    if (!is_on_own_triangles(best)) warn_of_topology(best, plan_.input, run_);
     return best;
   }
 
  private:
   bool allows(int32_t resolution, bool is_refining) {
-    return memory_allows(estimate_plan(plan_, soup_, resolution), is_refining, report_, context_);
+    return memory_allows(estimate_plan(plan_, soup_, resolution), is_refining, run_);
+  }
+
+  /// Width of the smallest cells that the lengths ask for, as far as the grid that even cells would have carries them.
+  /// They are looked for on that grid, but curvature asks for the smallest ones anyway. None where lengths are even.
+  std::optional<double> smallest_cell_world(int32_t usual, double voxel_size) {
+    if (plan_.options.adaptivity > 0) return kFewestCellVox * voxel_size;
+    PreparedSurface p = *with_sheet(snapped(usual), false);
+    run_.timed("lengths", [&] { set_lengths(p, context_); });
+    if (p.sheet.lengths.at.empty()) return {};
+    return smallest_cell_vox(p, context_) * voxel_size;
+  }
+
+  /// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.
+  int32_t resolution_for_lengths(int32_t usual) {
+    allows(usual, false);
+    const double voxel_size = frame_of(usual).voxel_size;
+    const std::optional<double> cell_world = smallest_cell_world(usual, voxel_size);
+    if (!cell_world) return usual;
+    int32_t resolution = resolution_for_cell(voxel_size * (usual - 1), *cell_world, plan_.target.vertices);
+    while (resolution > usual && context_.memory_limit_bytes > 0 &&
+           estimate_plan(plan_, soup_, resolution).bytes > context_.memory_limit_bytes)
+      resolution = std::max(usual, resolution - resolution / 8);
+    return resolution;
   }
 
   /// Of a needle, far thinner than a voxel, the grid on which its walls, grown, have room for the vertices, and no
   /// finer one; of all else the resolution that is given. The voxels that hold a needle are about as many as it is
   /// long, those that hold other surfaces as many as their area.
   int32_t resolution_for_needle(int32_t resolution) {
-    const double voxel = LatticeFrame::around(plan_.box.min, plan_.box.max, resolution).voxel_size;
+    const double voxel = frame_of(resolution).voxel_size;
     const double area_vox = plan_.input.area_world / (voxel * voxel);
     if (!plan_.chooses_grid() || area_vox > 2 * resolution || !allows(resolution, false)) return resolution;
-    const auto sites = double(timed(report_, "voxelize", context_,
-                                    [&] { return voxelize(snapped(resolution), context_).voxels.voxel_count(); }));
+    const auto sites =
+        double(run_.timed("voxelize", [&] { return voxelize(snapped(resolution), context_).voxels.voxel_count(); }));
     if (area_vox > sites / 2) return resolution;
     const double wanted = kNeedleVoxelsPerVertex * double(plan_.target.vertices) / sites * resolution;
     return int32_t(std::clamp<double>(wanted, std::min(kMinDefaultResolution, resolution), resolution));
   }
 
+  LatticeFrame frame_of(int32_t resolution) const {
+    return LatticeFrame::around(plan_.box.min, plan_.box.max, resolution);
+  }
   LatticeSurface snapped(int32_t resolution) {
-    const LatticeFrame frame = LatticeFrame::around(plan_.box.min, plan_.box.max, resolution);
-    LatticeSurface surface = timed(report_, "snap", context_, [&] { return snap_surface(soup_, frame, context_); });
+    LatticeSurface surface = run_.timed("snap", [&] { return snap_surface(soup_, frame_of(resolution), context_); });
     surface.topology = plan_.input;
     return surface;
   }
@@ -198,11 +197,10 @@ class GridSearch {
   /// A frame that keeps its curves takes the first grid. None where it is no such frame.
   std::optional<PreparedSurface> cut_at_once(LatticeSurface surface) {
     if (!may_be_cut_at_once(plan_, surface.first_cap != kNone)) return {};
-    std::optional<PreparedSurface> p =
-        prepare_patches_alone(std::move(surface), plan_.options, source_, report_, context_);
+    std::optional<PreparedSurface> p = prepare_patches_alone(std::move(surface), plan_.options, source_, run_);
     if (!p) return {};
-    report_surface(*p, report_);
-    note_digests(*p, report_, context_);
+    report_surface(*p);
+    note_digests(*p, run_);
     return p;
   }
 
@@ -210,10 +208,10 @@ class GridSearch {
   std::optional<PreparedSurface> with_sheet(LatticeSurface surface, bool is_refining) {
     const std::optional<int32_t> closing_vox = requested_closing(plan_, surface.frame);
     try {
-      return prepare_surface(std::move(surface), closing_vox, plan_.options, report_, context_);
+      return prepare_surface(std::move(surface), closing_vox, plan_.options, run_);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::out_of_memory || !is_refining) throw;
-      report_.warnings.push_back(std::string("the grid was not refined further: ") + error.what());
+      run_.warn(std::string("the grid was not refined further: ") + error.what());
       return {};
     }
   }
@@ -221,7 +219,7 @@ class GridSearch {
   const TriangleSoup& soup_;
   const Plan& plan_;
   const PatchSource& source_;
-  RemeshReport& report_;
+  Run& run_;
   Context& context_;
 };
 
@@ -231,52 +229,48 @@ void refuse_region_lengths(const RemeshOptions& options) {
                 "--region-edge-length is for volumes of labels, and meshes with regions; leave it out");
 }
 
-Prepared prepare_walls(const TriangleSoup& walls, const RemeshOptions& options, RemeshReport report, Context& context) {
-  PreparedSurface p = prepare_regions(walls, with_even_length(options, walls), report, context);
-  p.report = std::move(report);
-  return PreparedParts::hold(std::move(p));
+Prepared prepare_walls(const TriangleSoup& walls, const RemeshOptions& options, const FarVertexReport& far, Run& run) {
+  PreparedSurface p = prepare_regions(walls, with_even_length(options, walls), run);
+  p.report.input.far = far;
+  return held(std::move(p), run);
 }
 
 }  // namespace
 
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, Context& context) {
   refuse_region_lengths(options);
-  RemeshReport report;
+  Run run{context, options.want_digests};
   std::optional<int32_t> closing;
   if (closing_vox >= 0) closing = closing_vox;
-  PreparedSurface p = prepare_surface(std::move(surface), closing, checked(options), report, context);
-  finish(p, {}, report, context);
-  p.report = std::move(report);
-  return PreparedParts::hold(std::move(p));
+  PreparedSurface p = prepare_surface(std::move(surface), closing, checked(options), run);
+  finish(p, {}, run);
+  return held(std::move(p), run);
 }
 
 Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested, Context& context) {
-  RemeshReport report;
+  Run run{context, requested.want_digests};
   const RemeshOptions given_options = checked(requested);
   const std::optional<TriangleSoup> pulled = pull_back_far_vertices(given_soup, given_options, context);
   const TriangleSoup& soup = pulled ? *pulled : given_soup;
-  report.input.far = soup.far;
   if (!given_options.regions.empty()) {
-    PartRegions found = timed(report, "regions", context,
-                              [&] { return find_part_regions(soup, part_options(given_options, soup), context); });
-    report.warnings = std::move(found.warnings);
-    return prepare_walls(found.walls, given_options, std::move(report), context);
+    PartRegions found =
+        run.timed("regions", [&] { return find_part_regions(soup, part_options(given_options, soup), context); });
+    run.warnings = std::move(found.warnings);
+    return prepare_walls(found.walls, given_options, soup.far, run);
   }
-  if (!soup.regions.empty()) return prepare_walls(soup, given_options, std::move(report), context);
+  if (!soup.regions.empty()) return prepare_walls(soup, given_options, soup.far, run);
   const RemeshOptions options = with_even_length(given_options, soup);
   refuse_region_lengths(options);
-  const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
-  report.input.dirt = measured.dirt;
+  const SoupTopology measured = run.timed("topology", [&] { return measure_topology(soup, context); });
   check_area(measured.topology);
   const Plan given = plan_of(options, measured.topology, bounding_box(soup));
-  memory_allows(estimate_plan(given, soup, kCoarsestGrid), false, report, context);  // repair comes first
-  const RepairedInput input = repair_and_unite(soup, measured, given, report, context);
+  memory_allows(estimate_plan(given, soup, kCoarsestGrid), false, run);  // repair comes first
+  const RepairedInput input = repair_and_unite(soup, measured, given, run);
   const TriangleSoup& meshed = input.soup(soup);
   const Plan plan = plan_of(options, input.topology, input.is_changed() ? bounding_box(meshed) : given.box);
-  PreparedSurface p = GridSearch(meshed, plan, {&soup, input.interfaces}, report, context).best_grid();
-  report.input.topology = measured.topology;
-  p.report = std::move(report);
-  return PreparedParts::hold(std::move(p));
+  PreparedSurface p = GridSearch(meshed, plan, {&soup, input.interfaces}, run).best_grid();
+  p.report.input = {measured.topology, measured.dirt, soup.far, input.repair, input.united};
+  return held(std::move(p), run);
 }
 
 Prepared prepare(const TriangleMesh& mesh, const RemeshOptions& options, Context& context) {

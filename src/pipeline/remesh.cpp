@@ -14,7 +14,6 @@
 #include "pipeline/grid/prepared_surface.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/patches/mend_sheet.h"
 #include "pipeline/patches/patches.h"
 #include "pipeline/patches/sheet_when_needed.h"
@@ -36,91 +35,59 @@ PatchOptions patch_options(const PreparedSurface& p, int64_t vertices, bool is_w
           is_warm ? p.previous : nullptr};
 }
 
-RelaxedSeeds relaxed_in_shell(const PreparedSurface& p, RemeshReport& report, Context& context) {
+RelaxedSeeds relaxed_in_shell(const PreparedSurface& p, Run& run) {
+  Context& context = run.context;
   const SeedOptions seeds{p.target.vertices, p.options.seed};
-  SeedSet start = timed(report, "seeds", context, [&] { return place_seeds(p.sites, p.samples, seeds, context); });
-  RelaxedSeeds relaxed = timed(report, "relax", context, [&] {
+  SeedSet start = run.timed("seeds", [&] { return place_seeds(p.sites, p.samples, seeds, context); });
+  RelaxedSeeds relaxed = run.timed("relax", [&] {
     return relax_in_shell(p.shell, p.sites, p.samples, std::move(start), relax_options(p.options), context);
   });
-  relaxed.seeds =
-      timed(report, "attach", context, [&] { return attach_to_sheet(p.sheet, std::move(relaxed.seeds), 0, context); });
+  relaxed.seeds = run.timed("attach", [&] { return attach_to_sheet(p.sheet, std::move(relaxed.seeds), 0, context); });
   return relaxed;
 }
 
 /// On the patches of a cut surface, or on the sheet. None where a mesh is to be made without.
-SeedSet relax_seeds(const PreparedSurface& p, bool in_patches, RemeshReport& report, Context& context) {
+SeedSet relax_seeds(const PreparedSurface& p, bool in_patches, RemeshReport& report, Run& run) {
   if (p.walls && p.walls->are_too_near) return {};
   const bool is_warm = report.coherence.began_warm = p.previous != nullptr;
   RelaxedSeeds relaxed;
   if (!in_patches && !is_warm && p.options.method == Method::shell)
-    relaxed = relaxed_in_shell(p, report, context);
+    relaxed = relaxed_in_shell(p, run);
   else
-    relaxed = timed(report, "relax", context, [&] {
-      if (in_patches) return relax_in_patches(*p.cut, patch_options(p, p.cut->seeds, is_warm), context);
-      return is_warm ? relaxed_from_previous(p, context) : relaxed_by_levels(p, context);
+    relaxed = run.timed("relax", [&] {
+      if (in_patches) return relax_in_patches(*p.cut, patch_options(p, p.cut->seeds, is_warm), run.context);
+      return is_warm ? relaxed_from_previous(p, run.context) : relaxed_by_levels(p, run.context);
     });
   report.relax = std::move(relaxed.report);
   report.seeds = relaxed.seeds.size();
-  note_digest(p.options, report, context, "seeds", relaxed.seeds);
+  run.note_digest("seeds", relaxed.seeds);
   return std::move(relaxed.seeds);
 }
 
-/// Dual, repair and the final mesh on the sheet.
-void mesh_on_sheet(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Context& context) {
-  report.optimize = {};
-  report.is_optimized = false;
-  const bool is_warm = report.coherence.began_warm;
-  const OptimizeOptions options = is_warm ? for_warm_frame(optimize_options(p.options)) : optimize_options(p.options);
-  const int64_t count = is_warm ? p.target.vertices : made.seeds.size();
-  make_dual_of_seeds(p.sheet, {count, is_warm}, made, report, context);
-  if (report.dual.failed_cells > 0) return;
-  OptimizedMesh optimized =
-      timed(report, "post", context, [&] { return optimize_mesh(p.sheet, std::move(made), options, context); });
-  report.optimize = optimized.report;
-  made = std::move(optimized);
-  report.is_optimized = true;
-}
-
 /// Numbers as in the frame before, where the mesh has not kept them, and how steady the frame is.
-void follow_previous(const RemeshOptions& options, bool has_numbers, TriangleMesh& mesh, RemeshReport& report) {
+void follow_previous(const RemeshOptions& options, bool has_numbers, TriangleMesh& mesh, CoherenceReport& report) {
   if (!options.previous) return;
   if (!has_numbers) number_as_before(*options.previous, mesh);
-  measure_coherence(*options.previous, mesh, report.coherence);
+  measure_coherence(*options.previous, mesh, report);
 }
 
-/// Where the grid is too coarse for that, too, the error says why it is tried.
-SeedSet relax_without_creases(const PreparedSurface& p, RemeshReport& report, Context& context) {
-  try {
-    return relax_seeds(p, false, report, context);
-  } catch (const NoRoom& error) {
-    throw NoRoom(error.stage(),
-                 std::string(error.what()) + "; creases could not be kept either: " + report.features.given_up);
-  }
-}
-
-/// What is not as it should be.
-void warn_of_mesh(const PreparedSurface& p, const SeededMesh& made, int64_t requested, RemeshReport& report) {
-  if (report.dual.failed_cells > 0)
-    report.warnings.push_back(
-        std::to_string(report.dual.failed_cells) +
-        " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
-  if (made.seeds.size() > requested) report.count.why = "its topology needs them at this resolution";
-  if (report.optimize.self_intersections == 0) return;
+/// Where triangles intersect, with a warning. None where none do.
+std::optional<WorldPoint> warn_of_intersections(const LatticeFrame& frame, const SeededMesh& made, int64_t pairs,
+                                                Run& run) {
+  if (pairs == 0) return {};
   const std::vector<PointQ8> corners = crossing_corners(*OnHost(made.mesh), {});
-  const WorldPoint at = p.surface.frame.to_world(corners.empty() ? made.mesh.position[0] : corners.front());
-  report.intersection_at = at;
-  report.warnings.push_back(std::to_string(report.optimize.self_intersections) +
-                            " pairs of triangles intersect, near " + readable_place(at, p.surface.frame) +
-                            ": parts of the surface are nearer to one another than its edges are long; ask for more "
-                            "--vertices");
+  const WorldPoint at = frame.to_world(corners.empty() ? made.mesh.position[0] : corners.front());
+  run.warn(std::to_string(pairs) + " pairs of triangles intersect, near " + readable_place(at, frame) +
+           ": parts of the surface are nearer to one another than its edges are long; ask for more "
+           "--vertices");
+  return at;
 }
 
-/// A run whose edge lengths decide was asked for no number.
-void report_count(const PreparedSurface& p, const TriangleMesh& mesh, RemeshReport& report) {
-  CountReport& count = report.count;
+/// Warns where it is another than the one asked for, which a run whose edge lengths decide has not.
+void report_count(const PreparedSurface& p, const TriangleMesh& mesh, CountReport& count, Run& run) {
   if (!p.options.edge_length_world && !p.vertices_of_lengths) count.asked = p.target.vertices;
   count.made = int64_t(mesh.vertices.size());
-  if (!count.is_met()) report.warnings.push_back(count.words());
+  if (!count.is_met()) run.warn(count.words());
 }
 
 /// A result, and whether its vertices have the numbers that they have in the frame before.
@@ -130,59 +97,80 @@ struct Triangulated {
 };
 
 /// Cells with flaws are mended. None where there is no room or memory for that: the mesh stays as it is then.
-std::optional<JoinedPatches> mended_on_sheet(const PreparedSurface& p, const SeededMesh& made, int64_t vertices,
-                                             RemeshReport& report, Context& context) {
-  std::optional<JoinedPatches> mended;
+std::optional<MendedPatches> mended_on_sheet(const PreparedSurface& p, const SeededMesh& made,
+                                             const OptimizeReport& optimized, int64_t vertices, Run& run) {
+  std::optional<MendedPatches> mended;
   try {
     failure_reason([&]() -> std::string {
-      mended = mend_sheet(p, made, patch_options(p, vertices, false), report, context);
+      mended = mend_sheet(p, made, optimized, patch_options(p, vertices, false), run);
       return "";
     });
   } catch (const Error& error) {
     if (error.code() != ErrorCode::out_of_memory) throw;
   }
-  if (!mended) return {};
-  report.dual.failed_cells = 0;
-  report.is_optimized = true;
-  if (mended->mesh.position.size() > vertices)
-    report.count.why = "parts of the surface are nearer to one another than edges are long";
   return mended;
 }
 
-/// From relaxed seeds.
-Triangulated triangulate_on_sheet(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Context& context) {
+/// Dual, repair and the final mesh, from relaxed seeds.
+Triangulated triangulate_on_sheet(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Run& run) {
+  report.grid = p.report.grid;
+  report.sheet = p.report.sheet;
   const bool is_warm = report.coherence.began_warm;
   const int64_t requested = is_warm ? p.target.vertices : made.seeds.size();
-  mesh_on_sheet(p, made, report, context);
+  report.dual = make_dual_of_seeds(p.sheet, {requested, is_warm}, made, run);
+  report.is_optimized = report.dual.failed_cells == 0;
+  report.optimize = {};
+  if (report.is_optimized) {
+    const OptimizeOptions usual = optimize_options(p.options), options = is_warm ? for_warm_frame(usual) : usual;
+    OptimizedMesh optimized =
+        run.timed("post", [&] { return optimize_mesh(p.sheet, std::move(made), options, run.context); });
+    report.optimize = optimized.report;
+    made = std::move(optimized);
+  }
+  std::optional<MendedPatches> mended;
+  if (!report.is_optimized || report.optimize.self_intersections > 0)
+    mended = mended_on_sheet(p, made, report.optimize, requested, run);
   Triangulated out;
-  std::optional<JoinedPatches> mended;
-  if (report.dual.failed_cells + report.optimize.self_intersections > 0)
-    mended = mended_on_sheet(p, made, requested, report, context);
   if (mended) {
-    out.mesh = to_world(mended->mesh, p.surface.frame);
-    flag_gaps(p, mended->home.view(), out.mesh, report.gaps);
+    report.dual.failed_cells = 0;
+    report.is_optimized = true;
+    report.optimize = mended->optimize;
+    report.sizing = mended->sizing;
+    const JoinedPatches& joined = mended->joined;
+    if (joined.mesh.position.size() > requested)
+      report.count.why = "parts of the surface are nearer to one another than edges are long";
+    out.mesh = to_world(joined.mesh, p.surface.frame);
+    flag_gaps(p, joined.home.view(), out.mesh, report.gaps);
     return out;
   }
-  warn_of_mesh(p, made, requested, report);
-  measure_edges(p.sheet, made.seeds, made.mesh, report.sizing, context);
+  if (!report.is_optimized)
+    run.warn(std::to_string(report.dual.failed_cells) +
+             " cells stay that are no disks: the result is not a closed 2-manifold; use a higher --resolution");
+  if (made.seeds.size() > requested) report.count.why = "its topology needs them at this resolution";
+  report.intersection_at = warn_of_intersections(p.surface.frame, made, report.optimize.self_intersections, run);
+  measure_edges(p.sheet, made.seeds, made.mesh, report.sizing, run.context);
   out = {to_world(made.mesh, p.surface.frame), is_warm};
   flag_gaps(p, OnHost(made.seeds)->home.view(), out.mesh, report.gaps);
   return out;
 }
 
 /// On its patches, or where that fails on the sheet without curves.
-Triangulated triangulate_anyhow(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Context& context) {
-  if (p.walls) return {triangulate_regions(p, made, patch_options(p, p.cut->seeds, false), report, context)};
-  SheetWhenNeeded sheet(p, context);
-  if (!p.cut || made.seeds.fixed.count == 0) return triangulate_on_sheet(sheet.get(report), made, report, context);
+Triangulated triangulate_anyhow(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Run& run) {
+  if (p.walls) return {triangulate_regions(p, made, patch_options(p, p.cut->seeds, false), report, run)};
+  SheetWhenNeeded sheet(p, run);
+  if (!p.cut || made.seeds.fixed.count == 0) return triangulate_on_sheet(sheet.get(), made, report, run);
   const PatchOptions in_patches = patch_options(p, p.cut->seeds, report.coherence.began_warm);
-  if (std::optional<TriangleMesh> mesh = triangulate_patches(p, sheet, made, in_patches, report, context))
+  if (std::optional<TriangleMesh> mesh = triangulate_patches(p, sheet, made, in_patches, report, run))
     return {std::move(*mesh)};
-  report.optimize = {};
-  const PreparedSurface& whole = sheet.get(report);
-  if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, report);
-  made.seeds = relax_without_creases(whole, report, context);
-  return triangulate_on_sheet(whole, made, report, context);
+  const PreparedSurface& whole = sheet.get();
+  if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, run);
+  try {
+    made.seeds = relax_seeds(whole, false, report, run);
+  } catch (const NoRoom& error) {  // where the grid is too coarse for that, too, the error says why it is tried
+    throw NoRoom(error.stage(),
+                 std::string(error.what()) + "; creases could not be kept either: " + report.features.given_up);
+  }
+  return triangulate_on_sheet(whole, made, report, run);
 }
 
 }  // namespace
@@ -190,19 +178,25 @@ Triangulated triangulate_anyhow(const PreparedSurface& p, SeededMesh& made, Reme
 Relaxed relax(const Prepared& prepared, Context& context) {
   const PreparedSurface& p = PreparedParts::of(prepared);
   Relaxed relaxed{{}, p.report};
-  relaxed.seeds = relax_seeds(p, p.cut != nullptr, relaxed.report, context);
+  Run run{context, p.options.want_digests};
+  run.exchange_log(relaxed.report);
+  relaxed.seeds = relax_seeds(p, p.cut != nullptr, relaxed.report, run);
+  run.exchange_log(relaxed.report);
   return relaxed;
 }
 
 RemeshResult triangulate(const Prepared& prepared, Relaxed relaxed, Context& context) {
   const PreparedSurface& p = PreparedParts::of(prepared);
   RemeshReport report = std::move(relaxed.report);
+  Run run{context, p.options.want_digests};
+  run.exchange_log(report);
   SeededMesh made;
   made.seeds = std::move(relaxed.seeds);
-  Triangulated out = triangulate_anyhow(p, made, report, context);
-  report_count(p, out.mesh, report);
-  follow_previous(p.options, out.has_numbers, out.mesh, report);
-  note_digest(p.options, report, context, "mesh", out.mesh);
+  Triangulated out = triangulate_anyhow(p, made, report, run);
+  report_count(p, out.mesh, report.count, run);
+  follow_previous(p.options, out.has_numbers, out.mesh, report.coherence);
+  run.note_digest("mesh", out.mesh);
+  run.exchange_log(report);
   return {std::move(out.mesh), std::move(report)};
 }
 

@@ -12,7 +12,6 @@
 #include "isoshell/boolean_union.h"
 #include "isoshell/readable.h"
 #include "pipeline/grid/sizing.h"
-#include "pipeline/grid/timed.h"
 #include "repair/holes/open_soup.h"
 
 namespace isoshell {
@@ -44,25 +43,24 @@ bool is_inside_out(const TriangleSoup& soup, double area_world) {
 /// The steps, on what the ones before left.
 class Repair {
  public:
-  Repair(const TriangleSoup& soup, const SoupTopology& measured, const Plan& plan, RemeshReport& report,
-         Context& context)
-      : given_(soup), measured_(measured), plan_(plan), report_(report), context_(context) {
+  Repair(const TriangleSoup& soup, const SoupTopology& measured, const Plan& plan, Run& run)
+      : given_(soup), measured_(measured), plan_(plan), run_(run), context_(run.context) {
     made_.topology = measured.topology;
   }
 
   RepairedInput made() {
     const InputTopology& given = measured_.topology;
     if (!unite(measured_, false) && (!given.closed || !given.oriented)) {
-      made_.changed = timed(report_, "mend", context_, [&] { return repaired(given_, plan_, report_.input.repair); });
+      made_.changed = run_.timed("mend", [&] { return repaired(given_, plan_, made_.repair); });
       const SoupTopology left = measured();
       made_.topology = left.topology;
-      report_.input.united = {};
+      made_.united = {};
       unite(left, plan_.options.boundary == Boundary::keep);
     }
     const InputTopology& input = made_.topology;
     if (input.closed && input.oriented && input.components == 1 &&
         run_with_threads(context_, [&] { return is_inside_out(soup(), input.area_world); }))
-      report_.input.united.turned_components = 1;  // by what follows, which knows one side from the other
+      made_.united.turned_components = 1;  // by what follows, which knows one side from the other
     return std::move(made_);
   }
 
@@ -70,7 +68,7 @@ class Repair {
   const TriangleSoup& soup() const { return made_.soup(given_); }
 
   SoupTopology measured() {
-    return timed(report_, "topology", context_, [&] { return measure_topology(soup(), context_); });
+    return run_.timed("topology", [&] { return measure_topology(soup(), context_); });
   }
 
   /// Result: whether the union has changed the surface.
@@ -81,13 +79,14 @@ class Repair {
     const Plan plan = plan_of(plan_.options, before, bounding_box(soup()));
     const UnionOptions options{plan.options.outer_only, keeps_open, plan.first_voxel_size_world() * kSheetGapVox,
                                false};
-    UnionReport& report = report_.input.united;
-    UnitedSoup united =
-        timed(report_, "unite", context_, [&] { return boolean_union(soup(), options, report, context_); });
+    UnionReport& report = made_.united;
+    UnitedSoup united = run_.timed("unite", [&] { return boolean_union(soup(), options, report, context_); });
     if (report.changed_anything()) {
       const InputTopology after = measure_topology(united.soup, context_).topology;
       if (before.boundary_loops > 0 ? after.boundary_loops == before.boundary_loops : after.closed && after.oriented) {
-        made_ = {std::move(united.soup), after, std::move(united.interfaces)};
+        made_.changed = std::move(united.soup);
+        made_.topology = after;
+        made_.interfaces = std::move(united.interfaces);
         if (!made_.interfaces.empty()) warn_of_internal_faces();
         return true;
       }
@@ -101,26 +100,25 @@ class Repair {
   void warn_of_internal_faces() {
     const auto& edges = made_.interfaces;
     std::ostringstream text;
-    text << counted(report_.input.united.internal_faces, "triangle")
-         << " between parts left out, solid is on both sides; " << counted(int64_t(edges.size()), "edge")
-         << " around them, the first at " << readable_place(edges.front()[0], bounding_box(soup())) << ", "
+    text << counted(made_.united.internal_faces, "triangle") << " between parts left out, solid is on both sides; "
+         << counted(int64_t(edges.size()), "edge") << " around them, the first at "
+         << readable_place(edges.front()[0], bounding_box(soup())) << ", "
          << (edges.size() == 1 ? "is a curve" : "are curves") << " where creases are kept";
-    report_.warnings.push_back(text.str());
+    run_.warn(text.str());
   }
 
   const TriangleSoup& given_;
   const SoupTopology& measured_;
   const Plan& plan_;
-  RemeshReport& report_;
+  Run& run_;
   Context& context_;
   RepairedInput made_;
 };
 
 }  // namespace
 
-RepairedInput repair_and_unite(const TriangleSoup& soup, const SoupTopology& measured, const Plan& plan,
-                               RemeshReport& report, Context& context) {
-  return Repair(soup, measured, plan, report, context).made();
+RepairedInput repair_and_unite(const TriangleSoup& soup, const SoupTopology& measured, const Plan& plan, Run& run) {
+  return Repair(soup, measured, plan, run).made();
 }
 
 }  // namespace isoshell

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "isoshell/remesh_report.h"
 #include "pipeline/grid/plan.h"
+#include "pipeline/grid/run_log.h"
 
 namespace isoshell {
 
@@ -14,6 +14,8 @@ namespace isoshell {
 struct RepairedInput {
   std::optional<TriangleSoup> changed;  ///< none where the input needs nothing
   InputTopology topology;
+  RepairReport repair;
+  UnionReport united;
   std::vector<std::array<WorldPoint, 2>> interfaces;  ///< edges where parts met, which are curves beside creases
 
   bool is_changed() const { return changed.has_value(); }
@@ -21,8 +23,7 @@ struct RepairedInput {
 };
 
 /// Unites components that share walls, touch or pass through each other; what is not closed and oriented then is
-/// repaired, and united. Says in report.input what was done.
-RepairedInput repair_and_unite(const TriangleSoup& soup, const SoupTopology& measured, const Plan& plan,
-                               RemeshReport& report, Context& context);
+/// repaired, and united.
+RepairedInput repair_and_unite(const TriangleSoup& soup, const SoupTopology& measured, const Plan& plan, Run& run);
 
 }  // namespace isoshell

@@ -126,15 +126,15 @@ TEST_CASE("creases: the search begins early on a device alone, at the edge lengt
   surface.topology.area_world = 6;
   PreparedSurface prepared = begin_with(std::move(surface), {});
   RemeshOptions& options = prepared.options;
-  RemeshReport report;
+  Run run{context};
   const bool is_on_device = test_backend() == Backend::cuda;
-  const auto search = begin_crease_search(prepared, report, context);
+  const auto search = begin_crease_search(prepared, run);
   CHECK((search != nullptr) == is_on_device);
-  CHECK(report.times.empty() == !is_on_device);
+  CHECK(run.times.empty() == !is_on_device);
   if (search) CHECK(search->result().mesh.vertices.size() == 8);
   options.features.creases = Features::Creases::off;
-  CHECK_FALSE(begin_crease_search(prepared, report, context));
+  CHECK_FALSE(begin_crease_search(prepared, run));
   options.features.creases = Features::Creases::automatic;
   options.adaptivity = .5;
-  CHECK_FALSE(begin_crease_search(prepared, report, context));
+  CHECK_FALSE(begin_crease_search(prepared, run));
 }

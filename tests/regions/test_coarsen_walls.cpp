@@ -26,8 +26,8 @@ struct Coarse {
 PreparedSurface prepared(const LabelVolume& volume, int64_t vertices, Context& context) {
   RemeshOptions options;
   options.vertices = vertices;
-  RemeshReport report;
-  return prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
+  Run run{context};
+  return prepare_regions(surface_of_labels(volume, "labels", 0), options, run);
 }
 
 WallMesh walls_of(const PreparedSurface& p) {

@@ -26,20 +26,20 @@ struct RelaxedWalls {
   RelaxedWalls(const LabelVolume& volume, int64_t vertices, Context& context) {
     RemeshOptions options;
     options.vertices = vertices;
-    p = prepare_regions(surface_of_labels(volume, "labels", 0), options, report, context);
+    Run run{context};
+    p = prepare_regions(surface_of_labels(volume, "labels", 0), options, run);
     in_patches.seeds.count = p.cut->seeds;
     const SeedSet seeds = relax_in_patches(*p.cut, in_patches, context).seeds;
     SeededMesh first{{}, host_copy(seeds)};
-    faults = mesh_patches(p, *p.cut, first, in_patches, report, context);
+    faults = mesh_patches(p, *p.cut, first, in_patches, run);
     if (faults.what.empty()) faults.optimized = {host_copy(seeds), {}, std::vector<char>(patch_count(*p.cut), 0)};
-    with_cells = mesh_with_cells(p, *p.cut, faults.optimized, in_patches, report, optimized, context);
+    with_cells = mesh_with_cells(p, *p.cut, faults.optimized, in_patches, optimized, run);
     mesh.emplace(*p.cut, with_cells.made, JoinOptions{p.cut->seeds});
   }
   FineCells cells() const {
     return {*p.cut, with_cells.made, *mesh, with_cells.dual, with_cells.cell, with_cells.is_optimized};
   }
 
-  RemeshReport report;
   OptimizeReport optimized;
   PreparedSurface p;
   PatchOptions in_patches;
@@ -143,9 +143,9 @@ TEST_CASE("ugly labels whose cells fail have regions that are closed and do not 
     if (pairs_of(volume).empty()) continue;
     INFO("random volume " << number);
     RelaxedWalls relaxed(volume, 300, context);
-    const auto made =
-        mend_patches(relaxed.p, *relaxed.p.cut, relaxed.faults, relaxed.in_patches, relaxed.report, context);
-    if (!made || made->warning.empty()) continue;  // no cell had faults
+    Run run{context};
+    const auto made = mend_patches(relaxed.p, *relaxed.p.cut, relaxed.faults, relaxed.in_patches, run);
+    if (!made || run.warnings.empty()) continue;  // no cell had faults
     ++mended;
     const JoinedPatches& joined = made->joined;
     Corners triangles;
@@ -195,8 +195,8 @@ TEST_CASE("mended patches are the same with any number of threads") {
   for (CpuContext* context : {&one, &four}) {
     RelaxedWalls relaxed(random_labels(38), 500, *context);
     REQUIRE(!relaxed.with_cells.faults.what.empty());
-    const auto mended =
-        mend_patches(relaxed.p, *relaxed.p.cut, relaxed.faults, relaxed.in_patches, relaxed.report, *context);
+    Run run{*context};
+    const auto mended = mend_patches(relaxed.p, *relaxed.p.cut, relaxed.faults, relaxed.in_patches, run);
     REQUIRE(mended);
     made.emplace_back();
     positions.emplace_back();

@@ -42,7 +42,7 @@ struct PreparedSurface {
   std::shared_ptr<const CutSurface> cut;      ///< the input's own triangles in patches; null where no features are kept
   std::shared_ptr<const RegionWalls> walls;   ///< of regions, which the surface parts; null: it bounds one solid
   std::shared_ptr<RelaxedMeanwhile> relaxed;  ///< on a device while creases were looked for, in case there are none
-  RemeshReport report;                        ///< up to here
+  RemeshReport report;                        ///< up to here; the log is there once all is prepared
 };
 
 /// The library's own way into a Prepared.

@@ -26,31 +26,29 @@ double area_vox(const PreparedSurface& p) {
   return p.surface.topology.area_world / (voxel * voxel);
 }
 
-void warn_of_grown_solid(const PreparedSurface& p, const InputTopology& input, RemeshReport& report) {
+void warn_of_grown_solid(const PreparedSurface& p, const InputTopology& input, Run& run) {
   const double voxel = p.surface.frame.voxel_size;
   const std::string thickness = length_text((2 * p.grown.distance_vox + 1) * voxel);
   if (p.grown.only_flaps) {
-    report.warnings.push_back(
-        "parts of the surface are open and bound nothing: the result follows both of their sides, about " + thickness +
-        " apart");
+    run.warn("parts of the surface are open and bound nothing: the result follows both of their sides, about " +
+             thickness + " apart");
     return;
   }
   if (!input.closed) {
-    report.warnings.push_back(
-        "the surface is open and its gaps are too wide to close: the result follows both of its sides, about " +
-        thickness + " apart; --close-gaps may close it");
+    run.warn("the surface is open and its gaps are too wide to close: the result follows both of its sides, about " +
+             thickness + " apart; --close-gaps may close it");
     return;
   }
   if (is_needle(p)) {
-    report.warnings.push_back("the surface is a needle, far thinner than its edges are long: its walls were grown to " +
-                              thickness + "; with more --vertices they stay thinner");
+    run.warn("the surface is a needle, far thinner than its edges are long: its walls were grown to " + thickness +
+             "; with more --vertices they stay thinner");
     return;
   }
-  report.warnings.push_back(std::to_string(input.components) + " components and " + std::to_string(input.genus) +
-                            " handles are more than so few vertices can show: hollows and gaps below " +
-                            length_text(2 * p.closing_vox * voxel) + " were closed and walls grown to at least " +
-                            thickness + "; ask for about " + std::to_string(vertices_for_parts(input)) +
-                            " --vertices, or, of a volume, for another --iso");
+  run.warn(std::to_string(input.components) + " components and " + std::to_string(input.genus) +
+           " handles are more than so few vertices can show: hollows and gaps below " +
+           length_text(2 * p.closing_vox * voxel) + " were closed and walls grown to at least " + thickness +
+           "; ask for about " + std::to_string(vertices_for_parts(input)) +
+           " --vertices, or, of a volume, for another --iso");
 }
 
 }  // namespace
@@ -74,20 +72,20 @@ int64_t smallest_component_q16(const PreparedSurface& p) {
   return is_needle(p) ? 0 : int64_t(4 * area_vox(p) / double(std::max<int64_t>(64, vertices)) * 65536);
 }
 
-void warn_of_topology(const PreparedSurface& p, const InputTopology& input, RemeshReport& report) {
-  if (p.grown) warn_of_grown_solid(p, input, report);
+void warn_of_topology(const PreparedSurface& p, const InputTopology& input, Run& run) {
+  const SheetReport& sheet = p.report.sheet;
+  if (p.grown) warn_of_grown_solid(p, input, run);
   if (p.grown && !p.grown.only_flaps) return;  // all of the solid is another one than the input's
-  if (input.closed && report.sheet.topology.components < input.components &&
+  if (input.closed && sheet.topology.components < input.components &&
       !shows_all_parts(p.target_of_input.vertices, input))
-    report.warnings.push_back(std::to_string(input.components) +
-                              " components and their handles are more than so few vertices can show: those smaller "
-                              "than four cells were left out, " +
-                              std::to_string(report.sheet.topology.components) + " stay; ask for more --vertices");
-  else if (report.sheet.is_compared && !report.sheet.agrees)
-    report.warnings.push_back("the solid has " + counted(report.sheet.topology.components, "component") +
-                              " and genus " + std::to_string(report.sheet.topology.genus) + ", the input " +
-                              std::to_string(input.components) + " and " + std::to_string(input.genus) +
-                              "; a higher --resolution may tell near parts apart");
+    run.warn(std::to_string(input.components) +
+             " components and their handles are more than so few vertices can show: those smaller "
+             "than four cells were left out, " +
+             std::to_string(sheet.topology.components) + " stay; ask for more --vertices");
+  else if (sheet.is_compared && !sheet.agrees)
+    run.warn("the solid has " + counted(sheet.topology.components, "component") + " and genus " +
+             std::to_string(sheet.topology.genus) + ", the input " + std::to_string(input.components) + " and " +
+             std::to_string(input.genus) + "; a higher --resolution may tell near parts apart");
 }
 
 }  // namespace isoshell

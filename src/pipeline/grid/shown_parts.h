@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pipeline/grid/prepared_surface.h"
+#include "pipeline/grid/run_log.h"
 
 namespace isoshell {
 
@@ -20,7 +21,7 @@ bool is_needle(const PreparedSurface& prepared);
 /// more than the vertices can show.
 int64_t smallest_component_q16(const PreparedSurface& prepared);
 
-/// Warns where the sheet is not of the input's topology.
-void warn_of_topology(const PreparedSurface& prepared, const InputTopology& input, RemeshReport& report);
+/// Warns where the sheet, as prepared.report says, is not of the input's topology.
+void warn_of_topology(const PreparedSurface& prepared, const InputTopology& input, Run& run);
 
 }  // namespace isoshell

@@ -75,14 +75,14 @@ int64_t vertices_of(const PreparedSurface& p, bool is_open) {
 }
 
 /// An estimate with the fine surface, which has about 21 vertices a seed. Throws: NoRoom where that is above the limit.
-int64_t bytes_when_cut(int64_t seeds, int64_t bytes_before, const Context& context) {
+void add_memory_of_cut(int64_t seeds, Run& run) {
   constexpr int64_t kBytesPerSeed = 21 * 350;
-  const int64_t bytes = bytes_before + kBytesPerSeed * seeds, limit = context.memory_limit_bytes;
+  const int64_t bytes = run.memory_estimate_bytes + kBytesPerSeed * seeds, limit = run.context.memory_limit_bytes;
   if (limit > 0 && bytes > limit)
     throw NoRoom("features", "the surface cut along them would take about " + std::to_string(bytes >> 20) +
                                  " MiB, more than the limit of " + std::to_string(limit >> 20) +
                                  "; raise --max-memory, or ask for fewer vertices");
-  return bytes;
+  run.memory_estimate_bytes = bytes;
 }
 
 std::vector<uint64_t> edges_of(const FeatureCurve& curve) {
@@ -124,8 +124,8 @@ struct CutPlan {
   CutOptions how = {};
 };
 
-SharedCut make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source, FeatureReport& found,
-                   Context& context) {
+CutAlongCurves make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source, FeatureReport found,
+                        Context& context) {
   auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, plan.how, context));
   if (cut->seeds == 0) cut->seeds = plan.seeds;
   const SeedSet fixed = seeds_on_curves(*cut, 0);
@@ -134,25 +134,24 @@ SharedCut make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource s
   found.patches = int64_t(patch_count(*cut));
   found.given_up.clear();
   cut->source = std::make_shared<const CutSource>(std::move(source));
-  return cut;
+  return {std::move(cut), std::move(found)};
 }
 
 /// The same along as many creases as half of the vertices can hold, to within a tenth or as near as some looks come.
 /// Throws: as cut_surface, at the first look.
-SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const CutSource& source, RemeshReport& report,
-                          Context& context) {
+CutAlongCurves cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const CutSource& source,
+                               const FeatureReport& all_found, Context& context) {
   const FeatureMesh& mesh = plan.mesh;
   const double most = std::max(1., kMostOnCurves * double(plan.seeds));
   CurveOptions within_budget = plan.curves;
   within_budget.edge_length_world = plan.how.edge_length_world;
   within_budget.most_vertices = most;
-  const FeatureReport all_found = report.features;
-  SharedCut cut;
+  CutAlongCurves cut;
   std::vector<uint64_t> kept_before;
   for (int look = 1; look <= kMostLooks; ++look) {
     const CurveNetwork network = find_curves(mesh, within_budget, plan.creases);
     const std::vector<uint64_t> kept = edges_of(network);
-    if (cut && kept == kept_before) break;
+    if (cut.surface && kept == kept_before) break;
     kept_before = kept;
     CutSource fewer = source;
     fewer.found = describe(mesh, network);
@@ -162,14 +161,14 @@ SharedCut cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const Cu
     found.border_loops = all_found.border_loops;
     found.length_world = all_found.length_world;
     const auto make = [&] {
-      cut = make_cut(plan, network, std::move(fewer), found, context);
-      report.features = found;
+      cut = make_cut(plan, network, std::move(fewer), std::move(found), context);
       return std::string();
     };
     if (look == 1) make();
     if (look > 1 && !failure_reason(make).empty()) break;  // what was cut before stays
-    if (double(found.vertices) <= kNearMost * most) break;
-    within_budget.most_vertices *= most / double(found.vertices);
+    const auto vertices = double(cut.features.vertices);
+    if (vertices <= kNearMost * most) break;
+    within_budget.most_vertices *= most / vertices;
   }
   return cut;
 }
@@ -183,33 +182,34 @@ double least_vertices_on(const CurveNetwork& network, const std::vector<LostCurv
 
 /// Cuts a mesh along its curves, or along fewer where these take too many of the vertices. Throws: NoRoom where there
 /// is no room for borders, seams and lines.
-SharedCut cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
-                      const FoundCreases& creases, CutSource source, int64_t seeds, const PreviousFrame* before,
-                      const PreparedSurface& p, RemeshReport& report, Context& context) {
+CutAlongCurves cut_network(const FeatureMesh& mesh, const CurveNetwork& network, const CurveOptions& curves,
+                           const FoundCreases& creases, const CutSource& source, int64_t seeds,
+                           const PreviousFrame* before, const PreparedSurface& p, const FeatureReport& found,
+                           Run& run) {
   CutPlan plan{mesh, curves, creases, p.surface.frame, seeds};
-  report.grid.memory_estimate_bytes = bytes_when_cut(seeds, report.grid.memory_estimate_bytes, context);
+  add_memory_of_cut(seeds, run);
   CutOptions& how = plan.how;
   how = {edge_length_for(mesh, network, seeds), 0,
          requested_lengths(p, !p.sheet.lengths.at.empty(), p.target_of_input.edge_length_world)};
   if (before) how.before = before->carried;
   const bool lengths_decide = how.requested.vary() && field_decides(p.options);
   if (!lengths_decide && (how.requested.vary() || curves.mode != CreaseMode::off)) how.vertices = seeds;
-  SharedCut cut;
+  CutAlongCurves cut;
   const auto cut_along_all = [&] {
     failure_reason([&] {
-      cut = make_cut(plan, network, source, report.features, context);
+      cut = make_cut(plan, network, source, found, run.context);
       return std::string();
     });
   };
   const bool may_fit =
       how.vertices == 0 || least_vertices_on(network, source.found, how.edge_length_world) <= double(seeds);
   if (may_fit) cut_along_all();
-  if (!cut && !how.before.empty()) {  // curves may keep more seeds than there is room for
+  if (!cut.surface && !how.before.empty()) {  // curves may keep more seeds than there is room for
     how.before.clear();
     if (may_fit) cut_along_all();
   }
-  if (cut) return cut;
-  return cut_along_fewer(plan, network, source, report, context);
+  if (cut.surface) return cut;
+  return cut_along_fewer(plan, network, source, found, run.context);
 }
 
 /// Those of which less than half was laid onto the sheet.
@@ -236,15 +236,15 @@ void name_as_laid(const LaidCurves& laid, const CurveNetwork& on_sheet, std::vec
   }
 }
 
-/// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. Null where none of them
-/// is near it. Throws: NoRoom.
-SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double edge_length_world,
-                    const std::string& against, const PreviousFrame* before, const PreparedSurface& p,
-                    RemeshReport& report, Context& context) {
-  if (!has_sheet(p)) return nullptr;
+/// Cuts the sheet along the curves of a mesh that cannot be cut itself, for the reason given. No surface where none of
+/// them is near it. Throws: NoRoom.
+CutAlongCurves cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double edge_length_world,
+                         const std::string& against, const PreviousFrame* before, const PreparedSurface& p,
+                         FeatureReport found, Run& run) {
+  if (!has_sheet(p)) return {};
   if (p.grown && !p.grown.only_flaps)  // the sheet is beside the surface everywhere
-    return nullptr;
-  const LaidCurves laid = lay_on_sheet(mesh, network, p, context);
+    return {};
+  const LaidCurves laid = lay_on_sheet(mesh, network, p, run.context);
   CurveOptions given;
   given.mode = CreaseMode::given;
   given.edge_length_world = edge_length_world;
@@ -253,13 +253,12 @@ SharedCut cut_sheet(const FeatureMesh& mesh, const CurveNetwork& network, double
   given.lines = laid.lines;
   const FoundCreases creases = find_creases(laid.mesh, given);
   const CurveNetwork on_sheet = find_curves(laid.mesh, given, creases);
-  if (on_sheet.curves.empty()) return nullptr;
+  if (on_sheet.curves.empty()) return {};
   const std::vector<LostCurve> all = describe(mesh, network);
   CutSource source{all, describe(laid.mesh, on_sheet), not_laid(all, laid.lengths_world(all.size())), true};
   name_as_laid(laid, on_sheet, source.found);
-  report.features.on_sheet = against;
-  return cut_network(laid.mesh, on_sheet, given, creases, std::move(source), p.target.vertices, before, p, report,
-                     context);
+  found.on_sheet = against;
+  return cut_network(laid.mesh, on_sheet, given, creases, source, p.target.vertices, before, p, found, run);
 }
 
 }  // namespace
@@ -269,47 +268,52 @@ bool may_keep_borders(const PreparedSurface& p) {
   return p.options.boundary == Boundary::keep && !p.surface.topology.closed;
 }
 
-SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const PreparedSurface& p,
-                            RemeshReport& report, Context& context) {
-  if (!failed.input) return nullptr;
+CutAlongCurves cut_sheet_instead(const CutSource& failed, const std::string& why, const PreparedSurface& p,
+                                 const FeatureReport& found, Run& run) {
+  CutAlongCurves cut;
+  if (!failed.input) return cut;
   const CutInput& input = *failed.input;
-  SharedCut cut;
   failure_reason([&] {
-    cut = cut_sheet(input.mesh, input.network, input.edge_length_world, why, nullptr, p, report, context);
+    cut = cut_sheet(input.mesh, input.network, input.edge_length_world, why, nullptr, p, found, run);
     return std::string();
   });
   return cut;
 }
 
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
-               PreparedSurface& p, RemeshReport& report, Context& context) {
+               PreparedSurface& p, Run& run) {
+  Context& context = run.context;
   CreaseReport creases;
-  FeatureReport& found = report.features;
+  FeatureReport& found = p.report.features;
   std::vector<LostCurve> all;
   const std::string why = failure_reason([&]() -> std::string {
     if (!known) known = run_with_threads(context, [&] { return find_creases(mesh, curves); });
     const CurveNetwork network = run_with_threads(context, [&] { return find_curves(mesh, curves, *known, &creases); });
     const bool is_open = count_kind(network, CurveKind::border) > 0 && may_keep_borders(p);
     report_found(mesh, network, is_open, found);
-    warn_of_branches(mesh, network, report.warnings);
+    warn_of_branches(mesh, network, run.warnings);
     found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
     if (found.curves == 0 && !is_open) return "";
     all = describe(mesh, network);
     const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
     if (!against.empty() && is_open) return against;
+    CutAlongCurves cut;
     if (!against.empty()) {
-      p.cut = cut_sheet(mesh, network, curves.edge_length_world, against, p.previous.get(), p, report, context);
-      return p.cut ? "" : against;
+      cut = cut_sheet(mesh, network, curves.edge_length_world, against, p.previous.get(), p, found, run);
+      if (!cut.surface) return against;
+    } else {
+      const SeparatedMesh apart = separated(mesh, network);
+      found.border_loops = apart.border_loops;
+      CutSource source{all, all, {}};
+      if (!is_open) source.input = std::make_shared<CutInput>(CutInput{mesh, network, curves.edge_length_world});
+      cut = cut_network(mesh, network, curves, *known, source, vertices_of(p, is_open) - apart.more_places,
+                        p.previous.get(), p, found, run);
     }
-    const SeparatedMesh apart = separated(mesh, network);
-    found.border_loops = apart.border_loops;
-    CutSource source{all, all, {}};
-    if (!is_open) source.input = std::make_shared<CutInput>(CutInput{mesh, network, curves.edge_length_world});
-    p.cut = cut_network(mesh, network, curves, *known, std::move(source), vertices_of(p, is_open) - apart.more_places,
-                        p.previous.get(), p, report, context);
+    p.cut = std::move(cut.surface);
+    found = std::move(cut.features);
     return "";
   });
-  if (!why.empty()) give_up(report, all, why);
+  if (!why.empty()) give_up(all, why, found, run);
   return why.empty();
 }
 

@@ -9,6 +9,7 @@
 #include "features/curves/find_curves.h"
 #include "features/cutting/cut_surface.h"
 #include "pipeline/grid/prepared_surface.h"
+#include "pipeline/grid/run_log.h"
 
 namespace isoshell {
 
@@ -30,17 +31,23 @@ struct CutSource {
 
 using SharedCut = std::shared_ptr<const CutSurface>;
 
+/// A surface that was cut, if it could be, and what is said of its curves.
+struct CutAlongCurves {
+  SharedCut surface;
+  FeatureReport features;
+};
+
 /// Of a surface that the options leave open.
 bool may_keep_borders(const PreparedSurface& p);
 
 /// Cuts the surface along the curves of its mesh: p.cut, which stays empty where there are none. False where there are
-/// curves that could not be kept, as the report says. `known` are the mesh's creases, where those were found.
+/// curves that could not be kept, as p.report says. `known` are the mesh's creases, where those were found.
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
-               PreparedSurface& p, RemeshReport& report, Context& context);
+               PreparedSurface& p, Run& run);
 
-/// The sheet, cut along the curves of an input whose own triangles gave no mesh, for this reason. Null where that
-/// cannot be.
-SharedCut cut_sheet_instead(const CutSource& failed, const std::string& why, const PreparedSurface& p,
-                            RemeshReport& report, Context& context);
+/// The sheet, cut along the curves of an input whose own triangles gave no mesh, for this reason, with what was `found`
+/// on the way there. No surface where that cannot be.
+CutAlongCurves cut_sheet_instead(const CutSource& failed, const std::string& why, const PreparedSurface& p,
+                                 const FeatureReport& found, Run& run);
 
 }  // namespace isoshell

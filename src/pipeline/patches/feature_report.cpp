@@ -68,53 +68,51 @@ std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& net
   return curves;
 }
 
-void report_left_out(const std::vector<LostCurve>& curves, const LatticeFrame& frame, RemeshReport& report) {
+void report_left_out(const std::vector<LostCurve>& curves, const LatticeFrame& frame, FeatureReport& report, Run& run) {
   std::map<std::string, std::vector<const LostCurve*>> by_reason;
   for (const LostCurve& curve : curves) by_reason[curve.reason].push_back(&curve);
   for (const auto& [reason, of_it] : by_reason) {
-    report.warnings.push_back(
-        counted(int64_t(of_it.size()), "crease is", "creases are") + " not kept, the first near " +
-        readable_place(of_it.front()->at, frame) + ": " +
-        (reason == kEdgesTooLong
-             ? "the edges are too long for them; ask for more --vertices, or, where they are noise, "
-               "for fewer creases by --features DEG or --features off"
-             : reason));
+    run.warn(counted(int64_t(of_it.size()), "crease is", "creases are") + " not kept, the first near " +
+             readable_place(of_it.front()->at, frame) + ": " +
+             (reason == kEdgesTooLong
+                  ? "the edges are too long for them; ask for more --vertices, or, where they are noise, "
+                    "for fewer creases by --features DEG or --features off"
+                  : reason));
   }
-  report.features.lost.insert(report.features.lost.end(), curves.begin(), curves.end());
+  report.lost.insert(report.lost.end(), curves.begin(), curves.end());
 }
 
-void warn_of_left_alone(int64_t triangles, RemeshReport& report) {
+void warn_of_left_alone(int64_t triangles, Run& run) {
   if (triangles == 0) return;
-  report.warnings.push_back(counted(triangles, "triangle") +
-                            " with angles below 30 degrees beside curves were left as they were: more looks at them "
-                            "than the result has vertices would take too long; more vertices make better triangles");
+  run.warn(counted(triangles, "triangle") +
+           " with angles below 30 degrees beside curves were left as they were: more looks at them "
+           "than the result has vertices would take too long; more vertices make better triangles");
 }
 
-void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why) {
-  FeatureReport& features = report.features;
-  const int64_t creases = features.curves - features.seams - features.lines;
+void give_up(const std::vector<LostCurve>& curves, const std::string& why, FeatureReport& report, Run& run) {
+  const int64_t creases = report.curves - report.seams - report.lines;
   std::string what;
   const auto add = [&](const std::string& kind) { what += (what.empty() ? "" : " and ") + kind; };
-  if (features.border_loops > 0) add("borders");
+  if (report.border_loops > 0) add("borders");
   if (creases > 0) add(counted(creases, "crease"));
-  if (features.seams > 0) add(counted(features.seams, "seam"));
-  if (features.lines > 0) add(counted(features.lines, "line"));
+  if (report.seams > 0) add(counted(report.seams, "seam"));
+  if (report.lines > 0) add(counted(report.lines, "line"));
   if (what.empty()) what = "creases";  // none was found yet
-  const bool is_one = features.border_loops == 0 && features.curves == 1;
-  report.warnings.push_back(what + (is_one ? " is not kept: " : " are not kept: ") + why +
-                            (features.border_loops > 0 ? "; the result is closed" : "") +
-                            (features.seams > 0 ? "; triangles lie across seams" : ""));
+  const bool is_one = report.border_loops == 0 && report.curves == 1;
+  run.warn(what + (is_one ? " is not kept: " : " are not kept: ") + why +
+           (report.border_loops > 0 ? "; the result is closed" : "") +
+           (report.seams > 0 ? "; triangles lie across seams" : ""));
   for (const LostCurve& curve : curves) {
     const bool is_wanted = curve.kind != name_of(CurveKind::non_manifold) &&
-                           (curve.kind != name_of(CurveKind::border) || features.border_loops > 0);
+                           (curve.kind != name_of(CurveKind::border) || report.border_loops > 0);
     if (!is_wanted) continue;
-    features.lost.push_back(curve);
-    features.lost.back().reason = why;
+    report.lost.push_back(curve);
+    report.lost.back().reason = why;
   }
-  features.given_up = why;
-  features.on_sheet.clear();
-  features.kept_length_world = 0;
-  features.patches = features.vertices = features.segments = features.border_loops = 0;
+  report.given_up = why;
+  report.on_sheet.clear();
+  report.kept_length_world = 0;
+  report.patches = report.vertices = report.segments = report.border_loops = 0;
 }
 
 }  // namespace isoshell

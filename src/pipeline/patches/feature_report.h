@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "features/cutting/cut_surface.h"
-#include "isoshell/remesh.h"
+#include "pipeline/grid/run_log.h"
 
 namespace isoshell {
 
@@ -27,12 +27,12 @@ void warn_of_branches(const FeatureMesh& mesh, const CurveNetwork& network, std:
 std::vector<LostCurve> describe(const FeatureMesh& mesh, const CurveNetwork& network);
 
 /// Says that some of the curves are not kept while others are, and warns.
-void report_left_out(const std::vector<LostCurve>& curves, const LatticeFrame& frame, RemeshReport& report);
+void report_left_out(const std::vector<LostCurve>& curves, const LatticeFrame& frame, FeatureReport& report, Run& run);
 
 /// Warns of poor triangles that are left because looking at all of them would take too long.
-void warn_of_left_alone(int64_t triangles, RemeshReport& report);
+void warn_of_left_alone(int64_t triangles, Run& run);
 
 /// Says that none of the curves is kept, and warns.
-void give_up(RemeshReport& report, const std::vector<LostCurve>& curves, const std::string& why);
+void give_up(const std::vector<LostCurve>& curves, const std::string& why, FeatureReport& report, Run& run);
 
 }  // namespace isoshell

@@ -57,30 +57,27 @@ std::string distance_reason(double distance_world, double limit_world) {
   return text.str();
 }
 
-void tell(const Polylines& lines, std::vector<LostCurve> lost, RemeshReport& report) {
+void tell(const Polylines& lines, std::vector<LostCurve>& lost, Run& run) {
   if (lost.empty()) return;
   std::sort(lost.begin(), lost.end(), [](const LostCurve& a, const LostCurve& b) { return a.index < b.index; });
   const std::string first = lines.name_of(size_t(lost.front().index)) + ": " + lost.front().reason;
   if (lost.size() == lines.segments.size())
     throw Error(ErrorCode::usage, "features",
                 "no line to keep is on the surface; " + first + "; give lines in the units and the place of the input");
-  report.warnings.push_back(counted(int64_t(lost.size()), "segment") + " of " +
-                            counted(int64_t(lines.segments.size()), "segment") + " of lines to keep " +
-                            (lost.size() == 1 ? "is" : "are") + " left out; " + first);
-  report.features.lost.insert(report.features.lost.end(), lost.begin(), lost.end());
+  run.warn(counted(int64_t(lost.size()), "segment") + " of " + counted(int64_t(lines.segments.size()), "segment") +
+           " of lines to keep " + (lost.size() == 1 ? "is" : "are") + " left out; " + first);
 }
 
 }  // namespace
 
 MeshWithLines with_given_lines(FeatureMesh mesh, const Polylines& lines, const std::vector<EdgeList>& followed,
-                               double edge_length_world, double voxel_size, RemeshReport& report) {
+                               double edge_length_world, double voxel_size, std::vector<LostCurve>& lost, Run& run) {
   check(lines);
   const double limit = kFarthest * edge_length_world;
   const SnappedPoints on = snapped(mesh, lines);
   LinesOnMesh near{{}, {}};
   std::vector<size_t> number;  // per segment of these
   std::vector<uint32_t> point(lines.points.size(), UINT32_MAX);
-  std::vector<LostCurve> lost;
   for (size_t s = 0; s < lines.segments.size(); ++s) {
     const auto [from, to] = lines.segments[s];
     const double farther = std::max(on.distance_world[from], on.distance_world[to]);
@@ -99,7 +96,7 @@ MeshWithLines with_given_lines(FeatureMesh mesh, const Polylines& lines, const s
   MeshWithLines embedded = embed_lines(std::move(mesh), near, followed, kSameVertex * voxel_size);
   for (const size_t s : embedded.lost_segments)
     lost.push_back(lost_segment(lines, number[s], "the surface leads no way from one end to the other"));
-  tell(lines, std::move(lost), report);
+  tell(lines, lost, run);
   return embedded;
 }
 

@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "core/watched.h"
+#include "features/walls/coarsen_walls.h"
 #include "features/walls/fine_cells.h"
 #include "features/walls/mesh_faults.h"
 #include "isoshell/readable.h"
 #include "pipeline/defects/inverted_regions.h"
+#include "pipeline/grid/attempt.h"
 #include "pipeline/grid/memory_estimate.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/patches/simplify_patches.h"
 
 namespace isoshell {
@@ -101,11 +102,12 @@ WallMesh with_fine_cells(FineCells& cells, FaultFinder& faults, Context& context
 }  // namespace
 
 std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSurface& cut, const PatchFaults& found,
-                                          const PatchOptions& in_patches, RemeshReport& report, Context& context) {
+                                          const PatchOptions& in_patches, Run& run) {
+  Context& context = run.context;
   if (!memory_allows(cut, context)) return {};
   MendedPatches out;
-  out.optimize = report.optimize;  // the first time; patches that are optimised again are added
-  const MeshWithCells with_cells = mesh_with_cells(p, cut, found.optimized, in_patches, report, out.optimize, context);
+  out.optimize = found.optimize;  // the first time; patches that are optimised again are added
+  const MeshWithCells with_cells = mesh_with_cells(p, cut, found.optimized, in_patches, out.optimize, run);
   const SeededMesh& made = with_cells.made;
   const PatchMesh relaxed = run_with_threads(context, [&] { return PatchMesh(cut, made, join_options(in_patches)); });
   FineCells cells(cut, made, relaxed, with_cells.dual, with_cells.cell, with_cells.is_optimized);
@@ -114,19 +116,34 @@ std::optional<MendedPatches> mend_patches(const PreparedSurface& p, const CutSur
   cells.add(seeds);
   JoinedCheck check(p, cut, context);
   FaultFinder faults(cut, check.crossings());
-  WallMesh mesh = timed(report, "coarsen", context, [&] { return with_fine_cells(cells, faults, context); });
-  auto joined = simplify_patches(std::move(mesh), in_patches, check, report, out.optimize, context);
+  WallMesh mesh = run.timed("coarsen", [&] { return with_fine_cells(cells, faults, context); });
+  auto joined = simplify_patches(std::move(mesh), in_patches, check, out.optimize, run);
   if (!joined) return {};
   out.joined = std::move(*joined);
   if (cells.count() > 0)
-    out.warning = words_of_coarse(cells.count(), int64_t(relaxed.vertices().size()), with_cells.faults.what);
+    run.warn(words_of_coarse(cells.count(), int64_t(relaxed.vertices().size()), with_cells.faults.what));
   return out;
 }
 
-JoinedPatches accepted(MendedPatches mended, RemeshReport& report) {
-  report.optimize = mended.optimize;
-  if (!mended.warning.empty()) report.warnings.push_back(std::move(mended.warning));
-  return std::move(mended.joined);
+MeshedPatches join_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made,
+                           const PatchOptions& options, Run& run) {
+  MeshedPatches out;
+  out.why_not = failure_reason([&]() -> std::string {
+    const PatchFaults faults = mesh_patches(p, cut, made, options, run);
+    out.dual = faults.dual;
+    out.optimize = faults.optimize;
+    if (faults.what.empty()) {
+      out.joined = run.timed("angles", [&] { return widened_to_count(cut, made, join_options(options), run.context); });
+      return "";
+    }
+    std::optional<MendedPatches> mended;
+    if (!options.previous) mended = mend_patches(p, cut, faults, options, run);
+    if (!mended) return faults.what;
+    out.joined = std::move(mended->joined);
+    out.optimize = mended->optimize;
+    return "";
+  });
+  return out;
 }
 
 }  // namespace isoshell

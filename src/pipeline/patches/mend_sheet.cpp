@@ -9,10 +9,8 @@
 #include "core/copy_product.h"
 #include "features/mesh/refine_mesh.h"
 #include "pipeline/grid/sizing.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/feature_report.h"
-#include "pipeline/patches/mend_patches.h"
 
 namespace isoshell {
 namespace {
@@ -59,22 +57,22 @@ CutSurface cut_of(Sheet sheet, int64_t vertices, double edge_length_world, Conte
 
 }  // namespace
 
-std::optional<JoinedPatches> mend_sheet(const PreparedSurface& p, const SeededMesh& made, const PatchOptions& options,
-                                        RemeshReport& report, Context& context) {
-  UntangledSheet start = timed(report, "untangle", context,
-                               [&] { return untangle_sheet(host_copy(p.sheet), host_copy(made.seeds), context); });
+std::optional<MendedPatches> mend_sheet(const PreparedSurface& p, const SeededMesh& made,
+                                        const OptimizeReport& optimized, const PatchOptions& options, Run& run) {
+  UntangledSheet start =
+      run.timed("untangle", [&] { return untangle_sheet(host_copy(p.sheet), host_copy(made.seeds), run.context); });
   if (start.self_intersections > 0) return {};
   on_host(start.seeds);
   const CutSurface cut =
-      cut_of(std::move(on_host(start.sheet)), options.seeds.count, edge_length_on_sheet_world(p), context);
+      cut_of(std::move(on_host(start.sheet)), options.seeds.count, edge_length_on_sheet_world(p), run.context);
   PatchFaults none_optimized;
+  none_optimized.optimize = optimized;
   none_optimized.optimized = {std::move(start.seeds), {}, {0}};
-  std::optional<MendedPatches> mended = mend_patches(p, cut, none_optimized, options, report, context);
+  std::optional<MendedPatches> mended = mend_patches(p, cut, none_optimized, options, run);
   if (!mended) return {};
-  JoinedPatches joined = accepted(std::move(*mended), report);
-  measure_edges(cut, joined, report.sizing);
-  warn_of_left_alone(joined.left_alone, report);
-  return joined;
+  measure_edges(cut, mended->joined, mended->sizing);
+  warn_of_left_alone(mended->joined.left_alone, run);
+  return mended;
 }
 
 }  // namespace isoshell

@@ -3,16 +3,15 @@
 
 #include <optional>
 
-#include "features/angles/patch_mesh.h"
-#include "pipeline/patches/patches.h"
+#include "pipeline/patches/mend_patches.h"
 
 namespace isoshell {
 
 /// The mesh of relaxed seeds on the sheet of which some cells are no disks, or some triangles intersect: as
 /// mend_patches, with the sheet as a cut surface of one patch and no curves. Homes of its vertices are those of the
-/// sheet's. `made`: the mesh that it is to replace. None where the memory limit does not allow it, or the sheet's own
-/// triangles intersect. Cost: as untangle_sheet, and as mend_patches.
-std::optional<JoinedPatches> mend_sheet(const PreparedSurface& p, const SeededMesh& made, const PatchOptions& options,
-                                        RemeshReport& report, Context& context);
+/// sheet's. `made`: the mesh that it is to replace, and what its optimisation did. None where the memory limit does not
+/// allow it, or the sheet's own triangles intersect. Cost: as untangle_sheet, and as mend_patches.
+std::optional<MendedPatches> mend_sheet(const PreparedSurface& p, const SeededMesh& made,
+                                        const OptimizeReport& optimized, const PatchOptions& options, Run& run);
 
 }  // namespace isoshell

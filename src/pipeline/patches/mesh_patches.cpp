@@ -10,7 +10,6 @@
 #include "pipeline/defects/flat_patches.h"
 #include "pipeline/defects/inverted_regions.h"
 #include "pipeline/defects/patch_defects.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/patches/new_crossings.h"
 #include "pipeline/sheet/dual_of_seeds.h"
 #include "pipeline/sheet/warm_start.h"
@@ -46,22 +45,18 @@ void on_patches(const CutSurface& cut, const PerPatch& chosen, SeededMesh& made,
   made = gather_patches(cut, {{whole, vertices_in(cut, inverse(chosen))}, {part, piece.in_whole}});
 }
 
-/// Result: whether all cells are disks.
-bool make_dual(const CutSurface& cut, SeededMesh& made, RemeshReport& report, Context& context) {
-  RemeshReport here;
-  make_dual_of_seeds(cut.surface, {made.seeds.size()}, made, here, context);
-  for (const StageTime& t : here.times) book_time(report, t.stage.c_str(), t.ms);
-  report.dual.inserted_seeds += here.dual.inserted_seeds;
-  report.dual.relabelled_vertices += here.dual.relabelled_vertices;
-  report.dual.repair_rounds += here.dual.repair_rounds;
-  return here.dual.failed_cells == 0;
+/// Books no time where there is no room for it.
+DualReport make_dual(const CutSurface& cut, SeededMesh& made, Run& run) {
+  Run here{run.context};
+  const DualReport dual = make_dual_of_seeds(cut.surface, {made.seeds.size()}, made, here);
+  for (const StageTime& t : here.times) run.book_time(t.stage, t.ms);
+  return dual;
 }
 
-void optimize(const CutSurface& cut, SeededMesh& made, const PatchOptions& options, RemeshReport& report,
-              OptimizeReport& sum, Context& context) {
-  OptimizedMesh optimized = timed(report, "post", context, [&] {
+void optimize(const CutSurface& cut, SeededMesh& made, const PatchOptions& options, OptimizeReport& sum, Run& run) {
+  OptimizedMesh optimized = run.timed("post", [&] {
     return optimize_mesh(cut.surface, std::move(made),
-                         options.previous ? for_warm_frame(options.optimize) : options.optimize, context);
+                         options.previous ? for_warm_frame(options.optimize) : options.optimize, run.context);
   });
   sum.flips += optimized.report.flips;
   sum.undone_vertices += optimized.report.undone_vertices;
@@ -156,10 +151,10 @@ PatchFaults find_faults(const PreparedSurface& p, const CutSurface& cut, const S
 
 /// Optimises the chosen patches of a mesh, whose vertices keep their numbers.
 void optimize_in_place(const CutSurface& cut, const PerPatch& chosen, SeededMesh& made, const PatchOptions& options,
-                       RemeshReport& report, OptimizeReport& sum, Context& context) {
-  if (!any(inverse(chosen))) return optimize(cut, made, options, report, sum, context);
+                       OptimizeReport& sum, Run& run) {
+  if (!any(inverse(chosen))) return optimize(cut, made, options, sum, run);
   if (!any(chosen)) return;
-  const CutPiece piece = piece_of(cut, chosen, context);
+  const CutPiece piece = piece_of(cut, chosen, run.context);
   SeededMesh part = gather_patches(piece.cut, {{made, in_piece(piece, cut)}});
   std::vector<uint32_t> number;  // per vertex of the part its own in the whole
   for (int64_t s = 0; s < part.seeds.fixed.count; ++s)
@@ -168,7 +163,7 @@ void optimize_in_place(const CutSurface& cut, const PerPatch& chosen, SeededMesh
   for (const TriangleIndices& t : made.mesh.triangles) is_used[t.a] = is_used[t.b] = is_used[t.c] = 1;
   for (int64_t s = made.seeds.fixed.count; s < made.seeds.size(); ++s)
     if (is_used[size_t(s)] && chosen[patch_of(cut, made, uint32_t(s))]) number.push_back(uint32_t(s));
-  optimize(piece.cut, part, options, report, sum, context);
+  optimize(piece.cut, part, options, sum, run);
   bring_to_host(part);
   for (uint32_t& home : part.seeds.home) home = piece.in_whole[home];
   replace_patches(cut, chosen, part, number, made);
@@ -195,34 +190,36 @@ void forget_unused(const CutSurface& cut, const SeededMesh& made, const PerPatch
 }  // namespace
 
 PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made, const PatchOptions& options,
-                         RemeshReport& report, Context& context) {
-  report.dual = {};
-  report.optimize = {};
-  const bool are_disks = make_dual(cut, made, report, context);
+                         Run& run) {
+  Context& context = run.context;
+  OptimizeReport sum;
+  DualReport dual = make_dual(cut, made, run);
+  const bool are_disks = std::exchange(dual.failed_cells, 0) == 0;  // the others are among the faults
   SeedSet seeds = host_copy(made.seeds);
   PerPatch chosen = patches_to_optimize(cut, made, are_disks);
-  on_patches(cut, chosen, made, context, [&](const CutSurface& part, SeededMesh& mesh) {
-    optimize(part, mesh, options, report, report.optimize, context);
-  });
+  on_patches(cut, chosen, made, context,
+             [&](const CutSurface& part, SeededMesh& mesh) { optimize(part, mesh, options, sum, run); });
   bring_to_host(made);
-  PatchFaults faults = find_faults(p, cut, made, report.optimize, context);
-  if (faults.what.empty()) return faults;
-  OptimizedPatches optimized{std::move(seeds), {host_copy(made.mesh), host_copy(made.seeds)}, std::move(chosen)};
-  triangulate_flat_patches(cut, faults, made);
-  made = gather_patches(cut, {{made, vertices_in(cut, PerPatch(patch_count(cut), 1))}});
-  faults = find_faults(p, cut, made, report.optimize, context);
-  if (!faults.what.empty()) faults.optimized = std::move(optimized);
+  PatchFaults faults = find_faults(p, cut, made, sum, context);
+  if (!faults.what.empty()) {
+    OptimizedPatches optimized{std::move(seeds), {host_copy(made.mesh), host_copy(made.seeds)}, std::move(chosen)};
+    triangulate_flat_patches(cut, faults, made);
+    made = gather_patches(cut, {{made, vertices_in(cut, PerPatch(patch_count(cut), 1))}});
+    faults = find_faults(p, cut, made, sum, context);
+    if (!faults.what.empty()) faults.optimized = std::move(optimized);
+  }
+  faults.dual = dual;
+  faults.optimize = sum;
   return faults;
 }
 
 MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const OptimizedPatches& optimized,
-                              const PatchOptions& options, RemeshReport& report, OptimizeReport& sum,
-                              Context& context) {
+                              const PatchOptions& options, OptimizeReport& sum, Run& run) {
+  Context& context = run.context;
   DualOptions keep_cells;
   keep_cells.keep_cells = true;
-  Triangulation dual = timed(report, "dual", context, [&] {
-    return triangulate_dual(cut.surface, host_copy(optimized.seeds), keep_cells, context);
-  });
+  Triangulation dual =
+      run.timed("dual", [&] { return triangulate_dual(cut.surface, host_copy(optimized.seeds), keep_cells, context); });
   bring_to_host(dual);
   MeshWithCells out;
   out.dual.assign(dual.mesh.triangles.begin(), dual.mesh.triangles.end());
@@ -235,7 +232,7 @@ MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, c
   const PerPatch others = take_optimized(cut, optimized, out.is_optimized, out.made);
   // Walls have no tips, which simplified cells would not get vertices for; without it fewer cells of theirs have
   // faults.
-  if (!cut.regions) optimize_in_place(cut, others, out.made, options, report, sum, context);
+  if (!cut.regions) optimize_in_place(cut, others, out.made, options, sum, run);
   bring_to_host(out.made);
   out.faults = find_faults(p, cut, out.made, sum, context);
   const PerPatch is_flat = triangulate_flat_patches(cut, out.faults, out.made);

@@ -17,8 +17,10 @@ struct OptimizedPatches {
 
 /// Where a mesh of relaxed seeds cannot be the run's.
 struct PatchFaults {
-  std::vector<uint32_t> vertices;   ///< of the mesh; ascending
-  std::string what;                 ///< empty: there are none
+  std::vector<uint32_t> vertices;  ///< of the mesh; ascending
+  std::string what;                ///< empty: there are none
+  DualReport dual = {};
+  OptimizeReport optimize = {};
   OptimizedPatches optimized = {};  ///< where there are some faults
 };
 
@@ -35,12 +37,12 @@ struct MeshWithCells {
 /// optimised, and those with faults that lie in a plane are triangulated there. Result: the vertices whose cells are
 /// none, of triangles that intersect and must not, and of regions that are inside out.
 PatchFaults mesh_patches(const PreparedSurface& p, const CutSurface& cut, SeededMesh& made, const PatchOptions& options,
-                         RemeshReport& report, Context& context);
+                         Run& run);
 
 /// The mesh of the seeds that were optimised, with their cells and with all vertices that the dual's repair puts in.
 /// Patches in which it puts in none are taken as they were optimised, and others are optimised but for walls of
-/// regions. `report`: of times alone. In host memory.
+/// regions. In host memory.
 MeshWithCells mesh_with_cells(const PreparedSurface& p, const CutSurface& cut, const OptimizedPatches& optimized,
-                              const PatchOptions& options, RemeshReport& report, OptimizeReport& sum, Context& context);
+                              const PatchOptions& options, OptimizeReport& sum, Run& run);
 
 }  // namespace isoshell

@@ -36,7 +36,8 @@ bool has_edges_of_many_faces(const SearchedSurface& searched) {
 
 }  // namespace
 
-void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport& report, Context& context) {
+void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, Run& run) {
+  Context& context = run.context;
   const LatticeFrame& frame = p.surface.frame;
   if (has_very_many_at_vertex(searched.mesh)) return;
   const bool meets = has_edges_of_many_faces(searched) ||
@@ -54,10 +55,9 @@ void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport
   const InputTopology after = measure_topology(whole, context).topology;
   if (!after.closed || !after.oriented) return;
   if (united.cut_faces > 0)
-    report.warnings.push_back(
-        counted(united.cut_faces, "face was", "faces were") +
-        " cut where the part touches or crosses itself, to within rounding; creases are those of what "
-        "it encloses");
+    run.warn(counted(united.cut_faces, "face was", "faces were") +
+             " cut where the part touches or crosses itself, to within rounding; creases are those of what "
+             "it encloses");
   const double rounding_world = searched.mesh.rounding_world;
   run_with_threads(context, [&] {
     searched.mesh = weld_for_features(whole);

@@ -1,7 +1,6 @@
 // Parts whose own faces meet, as others write them that touch themselves.
 #pragma once
 
-#include "pipeline/grid/prepared_surface.h"
 #include "pipeline/sheet/crease_search.h"
 
 namespace isoshell {
@@ -11,6 +10,6 @@ namespace isoshell {
 /// these faces meet all the same once they are rounded to the lattice. The mesh stays as it is where nothing meets,
 /// where that bounds no closed surface, and where a vertex has more than 1024 triangles. The surface is closed and
 /// oriented. Cost: a search for faces that meet, and where some do the union, and another search.
-void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, RemeshReport& report, Context& context);
+void unite_own_faces(SearchedSurface& searched, PreparedSurface& p, Run& run);
 
 }  // namespace isoshell

@@ -11,7 +11,6 @@
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/edge_subdivision.h"
 #include "features/mesh/remove_slivers.h"
-#include "features/walls/coarsen_walls.h"
 #include "geometry/half_edges.h"
 #include "geometry/triangle_grid.h"
 #include "geometry/world_vector.h"
@@ -25,12 +24,10 @@
 #include "pipeline/grid/attempt.h"
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/given_lines.h"
 #include "pipeline/patches/mend_patches.h"
-#include "pipeline/patches/mesh_patches.h"
 #include "pipeline/patches/own_faces.h"
 #include "pipeline/patches/part_fans.h"
 #include "pipeline/patches/sheet_when_needed.h"
@@ -87,29 +84,27 @@ std::vector<double> kept_lengths_world(const CutSurface& cut) {
 
 /// How long the curves are that the result has, and which it does not have: those that were left out, and those of
 /// which less than half is kept.
-void report_kept(const CutSurface& cut, RemeshReport& report) {
+void report_kept(const CutSurface& cut, FeatureReport& report, Run& run) {
   const std::vector<double> kept_world = kept_lengths_world(cut);
   std::vector<LostCurve> lost = cut.source->left_out;
   for (size_t c = 0; c < kept_world.size(); ++c) {
     const LostCurve& found = cut.source->found[c];
-    if (found.kind != name_of(CurveKind::border)) report.features.kept_length_world += kept_world[c];
+    if (found.kind != name_of(CurveKind::border)) report.kept_length_world += kept_world[c];
     if (2 * kept_world[c] >= found.length_world) continue;
     lost.push_back(found);
     lost.back().reason = kEdgesTooLong;
   }
-  double& kept_length_world = report.features.kept_length_world;  // edges of three faces may be kept, too
-  kept_length_world = std::min(kept_length_world, report.features.length_world);
-  report_left_out(lost, cut.frame, report);
+  report.kept_length_world = std::min(report.kept_length_world, report.length_world);  // edges of three faces, too
+  report_left_out(lost, cut.frame, report, run);
 }
 
 /// Says which attributes have none that could be kept.
-Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double edge_length_world, RemeshReport& report,
-               Context& context) {
+Seams seams_of(const TriangleSoup* source, const RemeshOptions& options, double edge_length_world, Run& run) {
   if (!source || source->attributes.empty()) return {};
-  return timed(report, "features", context, [&] {
+  return run.timed("features", [&] {
     Seams seams = find_seams(*source, options.uv_seams, edge_length_world);
     for (const DroppedAttribute& d : seams.dropped)
-      report.warnings.push_back("triangles may lie across the seams of " + d.name + ": " + d.reason);
+      run.warn("triangles may lie across the seams of " + d.name + ": " + d.reason);
     return seams;
   });
 }
@@ -154,94 +149,76 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
 }
 
 /// The mesh of patches, or why there is none.
-struct MeshOfPatches {
-  std::shared_ptr<const CutSurface> cut;  ///< that it is on
+struct MeshOfPatches : MeshedPatches {
+  CutAlongCurves cut;  ///< that it is on
   TriangleMesh mesh;
-  JoinedPatches joined;
-  std::string why_not;
 };
 
-MeshOfPatches mesh_of_patches(const PreparedSurface& p, std::shared_ptr<const CutSurface> cut, SeededMesh& made,
-                              const PatchOptions& options, RemeshReport& report, Context& context) {
-  MeshOfPatches out;
-  out.why_not = failure_reason([&]() -> std::string {
-    const PatchFaults faults = mesh_patches(p, *cut, made, options, report, context);
-    if (!faults.what.empty() && options.previous) return faults.what;
-    if (faults.what.empty()) {
-      out.joined = timed(report, "angles", context,
-                         [&] { return widened_to_count(*cut, made, join_options(options), context); });
-    } else if (auto mended = mend_patches(p, *cut, faults, options, report, context)) {
-      out.joined = accepted(std::move(*mended), report);
-    } else {
-      return faults.what;
-    }
-    out.mesh = to_world(out.joined.mesh, p.surface.frame);
-    out.mesh.features = std::move(out.joined.features);
-    part_fans(out.mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
-    const bool is_manifold = check_mesh(out.mesh).is_manifold_with(report.features.border_loops);
-    return is_manifold ? "" : "parts that touch would make no manifold";
-  });
-  out.cut = std::move(cut);
+MeshOfPatches mesh_of_patches(const PreparedSurface& p, CutAlongCurves cut, SeededMesh& made,
+                              const PatchOptions& options, Run& run) {
+  MeshOfPatches out{join_patches(p, *cut.surface, made, options, run), std::move(cut), {}};
+  if (!out.why_not.empty()) return out;
+  out.mesh = to_world(out.joined.mesh, p.surface.frame);
+  out.mesh.features = std::move(out.joined.features);
+  part_fans(out.mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
+  if (!check_mesh(out.mesh).is_manifold_with(out.cut.features.border_loops))
+    out.why_not = "parts that touch would make no manifold";
   return out;
 }
 
-/// Of a frame that cannot be made from the one before, from new seeds.
-MeshOfPatches mesh_begun_cold(const MeshOfPatches& failed, const PreparedSurface& p, const PatchOptions& in_patches,
-                              SeededMesh& made, RemeshReport& report, Context& context) {
-  report.coherence.began_warm = false;
-  report.coherence.why_cold = failed.why_not;
-  RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*p.cut, in_patches, context); });
-  report.relax = std::move(relaxed.report);
+RelaxReport relax_anew(const CutSurface& cut, const PatchOptions& in_patches, SeededMesh& made, Run& run) {
+  RelaxedSeeds relaxed = run.timed("relax", [&] { return relax_in_patches(cut, in_patches, run.context); });
   made = {{}, std::move(relaxed.seeds)};
-  return mesh_of_patches(p, p.cut, made, in_patches, report, context);
-}
-
-/// Of the mesh as it is: widening angles may have ended some that its patches had.
-void tell_intersections(const DualMesh& mesh, const LatticeFrame& frame, RemeshReport& report, Context& context) {
-  const auto crossings =
-      int64_t(crossing_pairs(mesh.position.view(), mesh.triangles.view(), {}, context.cancel).size());
-  report.optimize.self_intersections = crossings;
-  if (crossings == 0) return;
-  report.intersection_at = frame.to_world(crossing_corners(mesh, {}).front());
-  report.warnings.push_back(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") +
-                            ", near " + readable_place(*report.intersection_at, frame) +
-                            ", where the input's own triangles do");
+  return std::move(relaxed.report);
 }
 
 /// From the curves on the sheet, which has no bad place, and from new seeds.
 MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const PreparedSurface& p, PatchOptions in_patches,
-                                    SeededMesh& made, RemeshReport& report, Context& context) {
-  const std::shared_ptr<const CutSurface> cut = timed(report, "features", context, [&] {
-    return cut_sheet_instead(*failed.cut->source, failed.why_not, p, report, context);
+                                    SeededMesh& made, RemeshReport& report, Run& run) {
+  CutAlongCurves cut = run.timed("features", [&] {
+    return cut_sheet_instead(*failed.cut.surface->source, failed.why_not, p, failed.cut.features, run);
   });
-  if (!cut) return failed;
-  in_patches.seeds.count = cut->seeds;
+  if (!cut.surface) return failed;
+  failed.cut = std::move(cut);
+  in_patches.seeds.count = failed.cut.surface->seeds;
   failed.why_not = failure_reason([&] {
-    RelaxedSeeds relaxed = timed(report, "relax", context, [&] { return relax_in_patches(*cut, in_patches, context); });
-    report.relax = std::move(relaxed.report);
-    made = {{}, std::move(relaxed.seeds)};
+    report.relax = relax_anew(*failed.cut.surface, in_patches, made, run);
     return std::string();
   });
   if (!failed.why_not.empty()) return failed;
   report.seeds = made.seeds.size();
-  return mesh_of_patches(p, cut, made, in_patches, report, context);
+  return mesh_of_patches(p, std::move(failed.cut), made, in_patches, run);
+}
+
+/// Of the mesh as it is: widening angles may have ended some that its patches had. Result: where the first is.
+std::optional<WorldPoint> tell_intersections(const LatticeFrame& frame, MeshOfPatches& made, Run& run) {
+  const DualMesh& mesh = made.joined.mesh;
+  const auto crossings =
+      int64_t(crossing_pairs(mesh.position.view(), mesh.triangles.view(), {}, run.context.cancel).size());
+  made.optimize.self_intersections = crossings;
+  if (crossings == 0) return {};
+  const WorldPoint at = frame.to_world(crossing_corners(mesh, {}).front());
+  run.warn(counted(crossings, "pair of triangles intersects", "pairs of triangles intersect") + ", near " +
+           readable_place(at, frame) + ", where the input's own triangles do");
+  return at;
 }
 
 }  // namespace
 
 bool is_on_own_triangles(const PreparedSurface& p) { return p.cut && !p.cut->source->is_sheet; }
 
-void cut_into_patches(const PatchSource& source, PreparedSurface& p, RemeshReport& report, Context& context) {
+void cut_into_patches(const PatchSource& source, PreparedSurface& p, Run& run) {
   const RemeshOptions& options = p.options;
   if (options.method != Method::sheet) return;
+  Context& context = run.context;
   const double edge_world = p.target.edge_length_world;
-  const Seams seams = seams_of(source.soup, options, edge_world, report, context);
+  const Seams seams = seams_of(source.soup, options, edge_world, run);
   const std::shared_ptr<const Polylines>& lines = options.features.lines;
   if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines && !may_keep_borders(p))
     return;
   const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !may_keep_borders(p);
-  if (may_be_uncut) relax_meanwhile(p, report, context);
-  timed(report, "features", context, [&] {
+  if (may_be_uncut) relax_meanwhile(p, run);
+  run.timed("features", [&] {
     std::vector<std::array<WorldPoint, 2>> kept = seams.edges;
     kept.insert(kept.end(), source.interfaces.begin(), source.interfaces.end());
     SearchedSurface searched = searched_surface(p, kept, context);
@@ -250,56 +227,65 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, RemeshRepor
       searched.creases = run_with_threads(context, [&] { return find_creases(searched.mesh, curves); });
     const bool is_closed = p.surface.topology.closed && p.surface.topology.oriented;
     if (is_closed && seams.edges.empty() && !lines && !searched.creases->curve_edges.empty())
-      unite_own_faces(searched, p, report, context);
+      unite_own_faces(searched, p, run);
     FeatureMesh& mesh = searched.mesh;
+    FeatureReport& found = p.report.features;
     curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);
     if (curves.mode != CreaseMode::off) curves.interfaces = vertices_of(source.interfaces, mesh, p.surface.frame);
     if (lines) {
       MeshWithLines embedded = with_given_lines(std::move(mesh), *lines, {curves.seams, curves.interfaces}, edge_world,
-                                                p.surface.frame.voxel_size, report);
+                                                p.surface.frame.voxel_size, found.lost, run);
       mesh = std::move(embedded.mesh);
       curves.seams = std::move(embedded.followed[0]);
       curves.interfaces = std::move(embedded.followed[1]);
       curves.lines = std::move(embedded.edges);
     }
-    const size_t lost_lines = report.features.lost.size();
-    if (cut_along(mesh, curves, std::move(searched.creases), p, report, context) || curves.seams.empty()) {
+    const size_t lost_lines = found.lost.size();
+    if (cut_along(mesh, curves, std::move(searched.creases), p, run) || curves.seams.empty()) {
       if (p.creases) p.creases->free_meanwhile(std::move(searched));
       return;
     }
-    keep_lost_seams(report.features.lost, lost_lines);
-    const int64_t seams_apart = report.features.seams;  // from creases and borders
-    report.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
-                             " are not kept: " + report.features.given_up + "; triangles lie across seams";
+    keep_lost_seams(found.lost, lost_lines);
+    const int64_t seams_apart = found.seams;  // from creases and borders
+    run.warnings.back() = (seams_apart > 0 ? counted(seams_apart, "seam") : "seams along other curves") +
+                          " are not kept: " + found.given_up + "; triangles lie across seams";
     curves.seams.clear();
-    cut_along(mesh, curves, {}, p, report, context);
+    cut_along(mesh, curves, {}, p, run);
   });
 }
 
 std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetWhenNeeded& sheet, SeededMesh& made,
-                                                PatchOptions in_patches, RemeshReport& report, Context& context) {
-  MeshOfPatches made_here = mesh_of_patches(p, p.cut, made, in_patches, report, context);
-  if (!made_here.why_not.empty() && std::exchange(in_patches.previous, nullptr))
-    made_here = mesh_begun_cold(made_here, p, in_patches, made, report, context);
+                                                PatchOptions in_patches, RemeshReport& report, Run& run) {
+  MeshOfPatches made_here = mesh_of_patches(p, {p.cut, report.features}, made, in_patches, run);
+  if (!made_here.why_not.empty() && std::exchange(in_patches.previous, nullptr)) {
+    report.coherence.began_warm = false;
+    report.coherence.why_cold = made_here.why_not;
+    report.relax = relax_anew(*p.cut, in_patches, made, run);
+    made_here = mesh_of_patches(p, std::move(made_here.cut), made, in_patches, run);
+  }
   if (!made_here.why_not.empty())
-    made_here = mesh_on_sheet_instead(std::move(made_here), sheet.get(report), in_patches, made, report, context);
+    made_here = mesh_on_sheet_instead(std::move(made_here), sheet.get(), in_patches, made, report, run);
+  FeatureReport& features = report.features = std::move(made_here.cut.features);
   if (!made_here.why_not.empty()) {
-    give_up(report, p.cut->source->if_lost, made_here.why_not);
+    give_up(p.cut->source->if_lost, made_here.why_not, features, run);
     return {};
   }
-  const CutSurface& cut = *made_here.cut;
+  const CutSurface& cut = *made_here.cut.surface;
   TriangleMesh& mesh = made_here.mesh;
-  if (report.optimize.self_intersections > 0)
-    tell_intersections(made_here.joined.mesh, p.surface.frame, report, context);
+  if (made_here.optimize.self_intersections > 0)
+    report.intersection_at = tell_intersections(p.surface.frame, made_here, run);
+  report.dual = made_here.dual;
+  report.optimize = made_here.optimize;
   report.count.why = "its curves need them, or leave no room for more";
-  warn_of_left_alone(made_here.joined.left_alone, report);
+  warn_of_left_alone(made_here.joined.left_alone, run);
   if (cut.source->is_sheet) {
-    const PreparedSurface& whole = sheet.get(report);
-    const std::vector<uint32_t> at = run_with_threads(context, [&] { return nearest_of_sheet(whole.sheet, mesh); });
+    const PreparedSurface& whole = sheet.get();
+    report.grid = whole.report.grid;
+    report.sheet = whole.report.sheet;
+    const std::vector<uint32_t> at = run_with_threads(run.context, [&] { return nearest_of_sheet(whole.sheet, mesh); });
     flag_gaps(whole, {at.data(), int64_t(at.size())}, mesh, report.gaps);
-    report.warnings.push_back("curves are kept on the sheet, not on the input's own triangles: " +
-                              report.features.on_sheet);
-    if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, report);
+    run.warn("curves are kept on the sheet, not on the input's own triangles: " + features.on_sheet);
+    if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, run);
   } else {
     report.grid.closing_vox = report.grid.grown_vox = 0;  // those of the sheet, which is not used
     report.sheet.agrees = report.sheet.is_compared;
@@ -307,10 +293,10 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetW
     flag_caps(p, mesh, report.gaps);
   }
   measure_edges(cut, made_here.joined, report.sizing);
-  report.features.vertices = made_here.joined.on_curves;
-  report.features.segments = int64_t(mesh.features.curve_edges.size());
-  report.features.kept = report.is_optimized = true;
-  report_kept(cut, report);
+  features.vertices = made_here.joined.on_curves;
+  features.segments = int64_t(mesh.features.curve_edges.size());
+  features.kept = report.is_optimized = true;
+  report_kept(cut, features, run);
   return std::move(mesh);
 }
 

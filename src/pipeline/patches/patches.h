@@ -6,6 +6,7 @@
 
 #include "features/angles/patch_mesh.h"
 #include "pipeline/grid/prepared_surface.h"
+#include "pipeline/grid/run_log.h"
 
 namespace isoshell {
 
@@ -18,10 +19,10 @@ struct PatchSource {
 };
 
 /// Finds the creases and borders that the options ask for, and the seams of the attributes of `source`, and cuts the
-/// surface along them. Leaves p.cut empty where there are none, and says in the report why where there are some that
+/// surface along them. Leaves p.cut empty where there are none, and says in p.report why where there are some that
 /// cannot be kept. Seams are found again by the positions of their ends: what repair left as it was, and no union cut,
 /// has them, and so are interfaces.
-void cut_into_patches(const PatchSource& source, PreparedSurface& p, RemeshReport& report, Context& context);
+void cut_into_patches(const PatchSource& source, PreparedSurface& p, Run& run);
 
 /// Whether the surface was cut there, and not the sheet.
 bool is_on_own_triangles(const PreparedSurface& p);
@@ -50,6 +51,6 @@ RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options
 /// that are on no curve: report.features says so. With borders that are kept triangles may intersect where the input's
 /// do.
 std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetWhenNeeded& sheet, SeededMesh& made,
-                                                PatchOptions in_patches, RemeshReport& report, Context& context);
+                                                PatchOptions in_patches, RemeshReport& report, Run& run);
 
 }  // namespace isoshell

@@ -21,31 +21,30 @@ bool may_be_cut_at_once(const Plan& plan, bool has_caps) {
 }
 
 std::optional<PreparedSurface> prepare_patches_alone(LatticeSurface surface, const RemeshOptions& options,
-                                                     const PatchSource& source, RemeshReport& report,
-                                                     Context& context) {
+                                                     const PatchSource& source, Run& run) {
   PreparedSurface p = begin_with(std::move(surface), options);
-  RemeshReport tried = report;
-  tried.coherence.why_cold = choose_beginning(p);
+  p.report.coherence.why_cold = choose_beginning(p);
   if (!p.previous) return {};
-  cut_into_patches(source, p, tried, context);
-  if (!is_on_own_triangles(p)) {
-    report.times = std::move(tried.times);
-    return {};
-  }
-  report = std::move(tried);
-  return p;
+  const size_t warnings = run.warnings.size();
+  const int64_t bytes = run.memory_estimate_bytes;
+  cut_into_patches(source, p, run);
+  if (is_on_own_triangles(p)) return p;
+  run.warnings.resize(warnings);
+  run.memory_estimate_bytes = bytes;
+  return {};
 }
 
-const PreparedSurface& SheetWhenNeeded::get(RemeshReport& report) {
+const PreparedSurface& SheetWhenNeeded::get() {
   if (has_sheet(prepared_)) return prepared_;
   if (!made_) {
     RemeshOptions options = prepared_.options;
     options.features.creases = Features::Creases::off;  // they are cut along already
     options.previous.reset();                           // it is said already how the frame begins
-    made_ = prepare_surface(host_copy(prepared_.surface), 0, options, report, context_);
+    made_ = prepare_surface(host_copy(prepared_.surface), 0, options, run_);
     made_->previous = prepared_.previous;
     made_->cut = prepared_.cut;
-    report_sheet(*made_, report);
+    made_->report = prepared_.report;
+    report_sheet(*made_);
   }
   return *made_;
 }

@@ -13,20 +13,20 @@ namespace isoshell {
 bool may_be_cut_at_once(const Plan& plan, bool has_caps);
 
 /// The surface, cut along its curves on its own triangles, without sites, samples and sheet. None where it cannot be
-/// cut so: the report is as before then.
+/// cut so: of the run's log only its times stay then.
 std::optional<PreparedSurface> prepare_patches_alone(LatticeSurface surface, const RemeshOptions& options,
-                                                     const PatchSource& source, RemeshReport& report, Context& context);
+                                                     const PatchSource& source, Run& run);
 
 /// A prepared surface with its sheet, which is made when it is asked for first.
 class SheetWhenNeeded {
  public:
-  SheetWhenNeeded(const PreparedSurface& prepared, Context& context) : prepared_(prepared), context_(context) {}
-  /// Says what the sheet is in the report where it makes one.
-  const PreparedSurface& get(RemeshReport& report);
+  SheetWhenNeeded(const PreparedSurface& prepared, Run& run) : prepared_(prepared), run_(run) {}
+  /// Grid and sheet are in its report.
+  const PreparedSurface& get();
 
  private:
   const PreparedSurface& prepared_;
-  Context& context_;
+  Run& run_;
   std::optional<PreparedSurface> made_;
 };
 

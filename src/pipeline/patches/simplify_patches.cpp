@@ -11,7 +11,6 @@
 #include "pipeline/defects/inverted_regions.h"
 #include "pipeline/defects/patch_defects.h"
 #include "pipeline/grid/attempt.h"
-#include "pipeline/grid/timed.h"
 
 namespace isoshell {
 namespace {
@@ -23,8 +22,7 @@ struct Optimized {
 
 /// From where no triangles intersect: what would make some stays as it was. None of patches that are no manifold, or
 /// that a stage has no room for.
-std::optional<Optimized> optimized(const PatchMesh& mesh, const OptimizeOptions& options, RemeshReport& report,
-                                   Context& context) {
+std::optional<Optimized> optimized(const PatchMesh& mesh, const OptimizeOptions& options, Run& run) {
   OpenMesh open(mesh, mesh.lookup());
   SeededMesh made = open.take();
   if (!find_patch_defects(made).empty()) return {};
@@ -32,8 +30,8 @@ std::optional<Optimized> optimized(const PatchMesh& mesh, const OptimizeOptions&
   careful.keep_apart = true;
   OptimizedMesh out;
   const std::string why_not = failure_reason([&]() -> std::string {
-    out = timed(report, "post", context,
-                [&] { return optimize_mesh(mesh.lookup().cut().surface, std::move(made), careful, context); });
+    out = run.timed("post",
+                    [&] { return optimize_mesh(mesh.lookup().cut().surface, std::move(made), careful, run.context); });
     return "";
   });
   if (!why_not.empty()) return {};
@@ -51,18 +49,18 @@ bool JoinedCheck::is_valid(const JoinedPatches& joined, OptimizeReport& report) 
 }
 
 std::optional<JoinedPatches> simplify_patches(WallMesh mesh, const PatchOptions& options, JoinedCheck& check,
-                                              RemeshReport& report, OptimizeReport& sum, Context& context) {
+                                              OptimizeReport& sum, Run& run) {
   const JoinOptions join = join_options(options);
   const std::shared_ptr<const CutLookup> lookup = mesh.shared_lookup();
-  timed(report, "coarsen", context, [&] { coarsen_walls(mesh, join.vertices, context); });
+  run.timed("coarsen", [&] { coarsen_walls(mesh, join.vertices, run.context); });
   PatchMesh made(lookup, std::move(mesh), join);
   OptimizeReport done;
   if (check.is_valid(made.joined(), done))  // otherwise triangles intersect before anything is optimised
-    if (std::optional<Optimized> better = optimized(made, options.optimize, report, context)) {
+    if (std::optional<Optimized> better = optimized(made, options.optimize, run)) {
       made = PatchMesh(lookup, std::move(better->mesh), join);
       done = better->report;
     }
-  JoinedPatches joined = timed(report, "angles", context, [&] { return widened_to_count(std::move(made), context); });
+  JoinedPatches joined = run.timed("angles", [&] { return widened_to_count(std::move(made), run.context); });
   if (!check.is_valid(joined, sum)) return {};
   sum.flips += done.flips;
   sum.undone_vertices += done.undone_vertices;

@@ -26,9 +26,9 @@ class JoinedCheck {
 };
 
 /// Edges are collapsed, what is not settled is evened out, vertices off curves are optimised where no triangles
-/// intersect then, and angles beside curves are widened. None where that is not valid. `report`: of times alone. `sum`:
+/// intersect then, and angles beside curves are widened. None where that is not valid. `sum`:
 /// what the optimisation did is added. Cost: as coarsen, even_out, optimize_mesh and widen.
 std::optional<JoinedPatches> simplify_patches(WallMesh mesh, const PatchOptions& options, JoinedCheck& check,
-                                              RemeshReport& report, OptimizeReport& sum, Context& context);
+                                              OptimizeReport& sum, Run& run);
 
 }  // namespace isoshell

@@ -12,13 +12,9 @@
 #include "features/mesh/refine_mesh.h"
 #include "features/walls/coarsen_walls.h"
 #include "pipeline/defects/inverted_regions.h"
-#include "pipeline/grid/attempt.h"
 #include "pipeline/grid/sizing.h"
-#include "pipeline/grid/timed.h"
-#include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/mend_patches.h"
-#include "pipeline/patches/mesh_patches.h"
 #include "pipeline/patches/simplify_patches.h"
 #include "pipeline/regions/flat_walls.h"
 #include "pipeline/regions/region_walls.h"
@@ -64,81 +60,67 @@ WallTriangles few_triangles_of(const PreparedSurface& p, int64_t vertices) {
   return all_triangles_of(*p.cut);
 }
 
-bool has_inverted(const CutSurface& cut, const JoinedPatches& joined) {
-  return !find_inverted_regions(cut, joined.mesh, joined.features.patch).empty();
+MeshedPatches join_relaxed(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches, Run& run) {
+  MeshedPatches walls;
+  if (p.walls->are_too_near)
+    walls.why_not = kTooNear;
+  else
+    walls = join_patches(p, *p.cut, made, in_patches, run);
+  if (walls.why_not.empty() && !find_inverted_regions(*p.cut, walls.joined.mesh, walls.joined.features.patch).empty())
+    walls.why_not = "a region would be inside out";
+  return walls;
 }
 
-/// None where triangles intersect, as walls did that came in, or a region is too small for fewer vertices.
-std::optional<JoinedPatches> coarsened(const PreparedSurface& p, const PatchOptions& in_patches, RemeshReport& report,
-                                       Context& context) {
-  report.optimize = {};
-  JoinedCheck check(p, *p.cut, context);
-  WallMesh walls = timed(report, "coarsen", context, [&] {
-    return run_with_threads(context, [&] { return WallMesh(*p.cut, few_triangles_of(p, in_patches.seeds.count)); });
+/// Joins them from coarsened walls. False where triangles intersect, as walls did that came in, or a region is too
+/// small for fewer vertices.
+bool coarsen(const PreparedSurface& p, const PatchOptions& in_patches, MeshedPatches& walls, Run& run) {
+  walls.optimize = {};
+  JoinedCheck check(p, *p.cut, run.context);
+  WallMesh fine = run.timed("coarsen", [&] {
+    return run_with_threads(run.context, [&] { return WallMesh(*p.cut, few_triangles_of(p, in_patches.seeds.count)); });
   });
-  std::optional<JoinedPatches> made =
-      simplify_patches(std::move(walls), in_patches, check, report, report.optimize, context);
-  if (made && report.optimize.self_intersections > 0) made.reset();
-  if (!made) report.optimize = {};
-  return made;
+  std::optional<JoinedPatches> made = simplify_patches(std::move(fine), in_patches, check, walls.optimize, run);
+  const bool is_made = made && walls.optimize.self_intersections == 0;
+  if (is_made) walls.joined = std::move(*made);
+  if (!is_made) walls.optimize = {};
+  return is_made;
 }
 
-TriangleMesh mesh_of(const PreparedSurface& p, const CutSurface& cut, JoinedPatches joined, RemeshReport& report,
-                     Context& context) {
+TriangleMesh mesh_of(const PreparedSurface& p, JoinedPatches& joined, Run& run) {
+  const CutSurface& cut = *p.cut;
   if (p.walls->regions.are_of_voxels)
-    timed(report, "volumes", context, [&] { restore_volumes(cut, *p.walls, joined, context); });
+    run.timed("volumes", [&] { restore_volumes(cut, *p.walls, joined, run.context); });
   TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
   mesh.features = std::move(joined.features);
-  if (!p.walls->regions.are_of_voxels) put_on_planes(cut, *p.walls, joined.home.view(), mesh, context);
+  if (!p.walls->regions.are_of_voxels) put_on_planes(cut, *p.walls, joined.home.view(), mesh, run.context);
   mesh.regions = without_labels(p.walls->regions);
   const std::vector<std::array<int32_t, 2>> labels = labels_of_patches(cut);
   for (const uint32_t patch : mesh.features.patch) mesh.regions.labels.push_back(labels[patch]);
-  if (int64_t(mesh.vertices.size()) > p.target.vertices)
-    report.count.why = "the curves between its regions, and walls close together, need them";
-  warn_of_left_alone(joined.left_alone, report);
-  measure_edges(cut, joined, report.sizing);
-  report.features.vertices = joined.on_curves;
-  report.features.segments = int64_t(mesh.features.curve_edges.size());
-  report.features.kept = report.is_optimized = true;
   return mesh;
-}
-
-/// Of relaxed seeds, with cells simplified around faults. Result: why there is none.
-std::string join_relaxed(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
-                         JoinedPatches& joined, RemeshReport& report, Context& context) {
-  const CutSurface& cut = *p.cut;
-  const JoinOptions options = join_options(in_patches);
-  const PatchFaults faults = mesh_patches(p, cut, made, in_patches, report, context);
-  if (faults.what.empty()) {
-    joined = timed(report, "angles", context, [&] { return widened_to_count(cut, made, options, context); });
-    return has_inverted(cut, joined) ? "a region would be inside out" : "";
-  }
-  std::optional<MendedPatches> mended = mend_patches(p, cut, faults, in_patches, report, context);
-  if (!mended) return faults.what;
-  joined = accepted(std::move(*mended), report);
-  return "";
 }
 
 }  // namespace
 
 TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
-                                 RemeshReport& report, Context& context) {
-  JoinedPatches joined;
-  const std::string why_not = failure_reason([&]() -> std::string {
-    if (p.walls->are_too_near) return kTooNear;
-    return join_relaxed(p, made, in_patches, joined, report, context);
-  });
-  if (!why_not.empty()) {
-    std::optional<JoinedPatches> coarse = coarsened(p, in_patches, report, context);
-    report.warnings.push_back(std::string(coarse ? kCoarsened : "the walls of regions are as they came in: ") +
-                              why_not);
-    if (!coarse) {
-      report.count.why = "the walls of its regions are as they came in";
-      return walls_themselves(*p.walls);
-    }
-    joined = std::move(*coarse);
+                                 RemeshReport& report, Run& run) {
+  MeshedPatches walls = join_relaxed(p, made, in_patches, run);
+  const bool is_relaxed = walls.why_not.empty(), is_made = is_relaxed || coarsen(p, in_patches, walls, run);
+  if (!is_relaxed) run.warn((is_made ? kCoarsened : "the walls of regions are as they came in: ") + walls.why_not);
+  report.dual = walls.dual;
+  report.optimize = walls.optimize;
+  if (!is_made) {
+    report.count.why = "the walls of its regions are as they came in";
+    return walls_themselves(*p.walls);
   }
-  return mesh_of(p, *p.cut, std::move(joined), report, context);
+  TriangleMesh mesh = mesh_of(p, walls.joined, run);
+  if (int64_t(mesh.vertices.size()) > p.target.vertices)
+    report.count.why = "the curves between its regions, and walls close together, need them";
+  warn_of_left_alone(walls.joined.left_alone, run);
+  measure_edges(*p.cut, walls.joined, report.sizing);
+  report.features.vertices = walls.joined.on_curves;
+  report.features.segments = int64_t(mesh.features.curve_edges.size());
+  report.features.kept = report.is_optimized = true;
+  return mesh;
 }
 
 }  // namespace isoshell

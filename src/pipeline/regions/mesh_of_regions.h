@@ -9,6 +9,6 @@ namespace isoshell {
 /// are no disks, or triangles intersect, these are coarsened instead (see mend_patches.h), or all walls, to as many
 /// vertices (see coarsen_walls.h); where they intersect as they came in they stay so. The report says so.
 TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, const PatchOptions& in_patches,
-                                 RemeshReport& report, Context& context);
+                                 RemeshReport& report, Run& run);
 
 }  // namespace isoshell

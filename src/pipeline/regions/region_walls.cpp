@@ -13,7 +13,6 @@
 #include "geometry/wall_pressures.h"
 #include "isoshell/error.h"
 #include "pipeline/grid/sizing.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/regions/region_lengths.h"
@@ -77,17 +76,17 @@ CurveOptions curves_between_regions(const PreparedSurface& p) {
 }
 
 SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, const std::vector<double>& of_face_world,
-                    RemeshReport& report, Context& context) {
+                    Run& run) {
   const FeatureMesh& mesh = p.walls->mesh;
   CutOptions how;
   how.edge_length_world = edge_length_for(mesh, network, p.target.vertices);
   how.requested = requested_lengths(p, wants_lengths(p.options), how.edge_length_world);
   how.requested.of_face_world = of_face_world;
   how.is_rough = p.walls->regions.are_of_voxels;
-  for (std::string& text : warnings_of_bounds(how.requested)) report.warnings.push_back(std::move(text));
+  for (std::string& text : warnings_of_bounds(how.requested)) run.warn(std::move(text));
   if (!p.options.edge_length_world && !(how.requested.vary() && field_decides(p.options)))
     how.vertices = p.target.vertices;
-  auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, context));
+  auto cut = std::make_shared<CutSurface>(cut_surface(mesh, network, p.surface.frame, how, run.context));
   const SeedSet fixed = seeds_on_curves(*cut, 0);
   const int64_t wanted = cut->seeds > 0 ? cut->seeds : p.target.vertices;
   cut->seeds = std::max(wanted, FreeSeeds(*cut).fewest(fixed));
@@ -98,22 +97,21 @@ SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, const
 
 }  // namespace
 
-PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& options, RemeshReport& report,
-                                Context& context) {
+PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& options, Run& run) {
+  Context& context = run.context;
   check_asked_for(options);
-  const SoupTopology measured = timed(report, "topology", context, [&] { return measure_topology(soup, context); });
-  report.input.dirt = measured.dirt;
+  const SoupTopology measured = run.timed("topology", [&] { return measure_topology(soup, context); });
   const Plan plan = plan_of(options, measured.topology, bounding_box(soup));
   LatticeSurface surface;
   const std::vector<double> of_face_world = lengths_of_faces_world(soup.regions, options.region_edge_lengths);
   surface.frame = frame_of_walls(soup, plan, of_face_world);
   const RunEstimate estimate = estimate_walls(plan, soup, of_face_world, surface.frame);
   require_memory_for_walls(estimate, context);
-  report.grid.memory_estimate_bytes = estimate.bytes;
+  run.memory_estimate_bytes = estimate.bytes;
   surface.topology = measured.topology;
   surface.topology.closed = surface.topology.oriented = true;  // as each region's own surface is
   PreparedSurface p = begin_with(std::move(surface), options);
-  timed(report, "features", context, [&] {
+  run.timed("features", [&] {
     auto walls = std::make_shared<RegionWalls>();
     walls->mesh = walls_of(soup, p, wants_lengths(options), context);
     walls->regions = soup.regions;
@@ -122,20 +120,21 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     p.walls = walls;
     const CurveNetwork network =
         run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p)); });
-    report_found(p.walls->mesh, network, false, report.features);
-    const SharedCut cut = cut_walls(p, network, of_face_world, report, context);
+    report_found(p.walls->mesh, network, false, p.report.features);
+    const SharedCut cut = cut_walls(p, network, of_face_world, run);
     if (cut->is_requested && field_decides(p.options)) {
       p.vertices_of_lengths = cut->seeds;
       set_target(p);
     }
-    report.features.patches = int64_t(patch_count(*cut));
+    p.report.features.patches = int64_t(patch_count(*cut));
     p.cut = cut;
     if (walls->regions.are_of_voxels && cut->seeds >= kManyVertices)
       walls->are_too_near =
           run_with_threads(context, [&] { return share_of_near_walls(*cut, cut->seeds) > kMostNear; });
   });
-  report.input.topology = measured.topology;
-  report.grid.frame = p.surface.frame;
+  p.report.input.topology = measured.topology;
+  p.report.input.dirt = measured.dirt;
+  p.report.grid.frame = p.surface.frame;
   return p;
 }
 

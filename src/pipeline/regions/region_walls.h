@@ -6,6 +6,7 @@
 #include "features/mesh/feature_mesh.h"
 #include "isoshell/regions.h"
 #include "pipeline/grid/prepared_surface.h"
+#include "pipeline/grid/run_log.h"
 
 namespace isoshell {
 
@@ -23,7 +24,6 @@ struct RegionWalls {
 /// Cuts the walls along the curves where three regions or more meet, and along the creases that the options ask for:
 /// the grid and the surface of a run that parts regions. As many vertices as the options ask for, or as few as the
 /// curves take. Throws: nothing_to_mesh, usage, out_of_memory, interrupted.
-PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& checked_options, RemeshReport& report,
-                                Context& context);
+PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& checked_options, Run& run);
 
 }  // namespace isoshell

@@ -8,7 +8,6 @@
 #include "features/mesh/remove_slivers.h"
 #include "features/mesh/weld_for_features.h"
 #include "pipeline/grid/sizing.h"
-#include "pipeline/grid/timed.h"
 
 namespace isoshell {
 namespace {
@@ -98,14 +97,14 @@ void CreaseSearch::free_meanwhile(SearchedSurface found) {
                       [found = std::move(found)]() mutable { const auto ends_here = std::move(found); });
 }
 
-std::shared_ptr<CreaseSearch> begin_crease_search(const PreparedSurface& p, RemeshReport& report, Context& context) {
+std::shared_ptr<CreaseSearch> begin_crease_search(const PreparedSurface& p, Run& run) {
   const RemeshOptions& options = p.options;
   const bool is_wanted = options.method == Method::sheet && options.features.creases != Features::Creases::off;
   const bool is_known = !options.features.lines && !wants_lengths(options);
   if (p.surface.points.space() == MemorySpace::host || !is_wanted || !is_known) return nullptr;
   const double edge_world = p.target_of_input.edge_length_world;
-  return timed(report, "features", context, [&] {
-    return std::make_shared<CreaseSearch>(p.surface, curve_options(options, p.previous.get(), edge_world), context);
+  return run.timed("features", [&] {
+    return std::make_shared<CreaseSearch>(p.surface, curve_options(options, p.previous.get(), edge_world), run.context);
   });
 }
 

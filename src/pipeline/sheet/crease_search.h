@@ -9,6 +9,7 @@
 #include "features/curves/find_curves.h"
 #include "isoshell/advanced/own_thread.h"
 #include "pipeline/grid/prepared_surface.h"
+#include "pipeline/grid/run_log.h"
 
 namespace isoshell {
 
@@ -55,7 +56,7 @@ class CreaseSearch {
 };
 
 /// Begins the search that cut_into_patches ends, where nothing else would use the host's threads: the surface lies on a
-/// device. Null elsewhere, and where the edge length depends on the sheet. Reports the time of the beginning alone.
-std::shared_ptr<CreaseSearch> begin_crease_search(const PreparedSurface& p, RemeshReport& report, Context& context);
+/// device. Null elsewhere, and where the edge length depends on the sheet. Books the time of the beginning alone.
+std::shared_ptr<CreaseSearch> begin_crease_search(const PreparedSurface& p, Run& run);
 
 }  // namespace isoshell

@@ -10,7 +10,6 @@
 #include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/grid/thin_walls.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/sheet/crease_search.h"
 #include "pipeline/sheet/flaps.h"
 #include "pipeline/sheet/warm_start.h"
@@ -26,15 +25,14 @@ constexpr double kSidesOfCrust = 0.75;  ///< of the area of both sides; a solid 
 /// Sites, samples and sheet of a surface, with the closing that is asked for or found.
 class Preparation {
  public:
-  Preparation(const RemeshOptions& options, RemeshReport& report, Context& context)
-      : options_(options), report_(report), context_(context) {}
+  Preparation(const RemeshOptions& options, Run& run) : options_(options), run_(run), context_(run.context) {}
 
   PreparedSurface from(LatticeSurface surface, std::optional<int32_t> closing_vox) {
     PreparedSurface p = begin_with(std::move(surface), options_);
-    if (options_.previous && !wants_lengths(options_)) report_.coherence.why_cold = choose_beginning(p);
-    p.creases = begin_crease_search(p, report_, context_);
-    p.sites = timed(report_, "voxelize", context_, [&] { return voxelize(p.surface, context_); });
-    p.samples = timed(report_, "samples", context_, [&] { return sample_sites(p.surface, p.sites, context_); });
+    if (options_.previous && !wants_lengths(options_)) p.report.coherence.why_cold = choose_beginning(p);
+    p.creases = begin_crease_search(p, run_);
+    p.sites = run_.timed("voxelize", [&] { return voxelize(p.surface, context_); });
+    p.samples = run_.timed("samples", [&] { return sample_sites(p.surface, p.sites, context_); });
     const bool shows_handles = shows_most_handles(p.target_of_input.vertices, p.surface.topology);
     join_components(p);
     mark_hollows(p);
@@ -75,8 +73,7 @@ class Preparation {
   void join_components(PreparedSurface& p) {
     InputTopology& input = p.surface.topology;
     if (input.genus < 0 || input.components < 2) return;
-    const int64_t joins =
-        timed(report_, "topology", context_, [&] { return count_joins(*OnHost(p.surface), *OnHost(p.samples)); });
+    const int64_t joins = run_.timed("topology", [&] { return count_joins(*OnHost(p.surface), *OnHost(p.samples)); });
     if (joins == 0) return;
     input.components -= joins;
     input.genus = -1;
@@ -86,9 +83,8 @@ class Preparation {
   void mark_hollows(PreparedSurface& p) {
     const InputTopology& input = p.surface.topology;
     if (!input.closed || !input.oriented || input.components < 2) return;
-    const std::vector<Voxel> hollows = timed(report_, "hollows", context_, [&] {
-      return find_hollows(*OnHost(p.surface), *OnHost(p.sites), *OnHost(p.samples));
-    });
+    const std::vector<Voxel> hollows =
+        run_.timed("hollows", [&] { return find_hollows(*OnHost(p.surface), *OnHost(p.sites), *OnHost(p.samples)); });
     if (hollows.empty()) return;
     p.sites = to_host(p.sites);
     p.sites.hollows = buffer_of(hollows);
@@ -139,11 +135,11 @@ class Preparation {
   void thicken_flaps(PreparedSurface& p) {
     if (p.sheet.topology.cut_handles > 0) return;
     const int32_t grown_vox = growth_for_edge(edge_length_on_sheet_world(p) / p.surface.frame.voxel_size);
-    timed(report_, "sheet", context_, [&] { return grow_flaps(p, grown_vox, smallest_component_q16(p), context_); });
+    run_.timed("sheet", [&] { return grow_flaps(p, grown_vox, smallest_component_q16(p), context_); });
   }
 
   void grow(PreparedSurface& p, int32_t grown_vox) {
-    timed(report_, "sheet", context_, [&] { grow_solid(p, grown_vox, smallest_component_q16(p), context_); });
+    run_.timed("sheet", [&] { grow_solid(p, grown_vox, smallest_component_q16(p), context_); });
   }
 
   SheetOptions sheet_options(const PreparedSurface& p, int32_t closing_vox) const {
@@ -152,12 +148,12 @@ class Preparation {
     return {closing_vox, smallest_component_q16(p), genus};
   }
   Sheet sheet(const PreparedSurface& p, int32_t closing_vox) {
-    return timed(report_, "sheet", context_,
-                 [&] { return build_sheet(p.surface, p.sites, p.samples, sheet_options(p, closing_vox), context_); });
+    return run_.timed(
+        "sheet", [&] { return build_sheet(p.surface, p.sites, p.samples, sheet_options(p, closing_vox), context_); });
   }
   /// Frees the samples on the way.
   Sheet last_sheet(PreparedSurface& p) {
-    return timed(report_, "sheet", context_, [&] {
+    return run_.timed("sheet", [&] {
       return build_sheet(p.surface, p.sites, std::move(p.samples), sheet_options(p, p.closing_vox), context_);
     });
   }
@@ -176,15 +172,15 @@ class Preparation {
   }
 
   const RemeshOptions& options_;
-  RemeshReport& report_;
+  Run& run_;
   Context& context_;
 };
 
 }  // namespace
 
 PreparedSurface prepare_surface(LatticeSurface surface, std::optional<int32_t> closing_vox,
-                                const RemeshOptions& options, RemeshReport& report, Context& context) {
-  PreparedSurface p = Preparation(options, report, context).from(std::move(surface), closing_vox);
+                                const RemeshOptions& options, Run& run) {
+  PreparedSurface p = Preparation(options, run).from(std::move(surface), closing_vox);
   if (p.creases) p.creases->wait_until_copied();
   return p;
 }
@@ -197,7 +193,8 @@ int64_t topology_gap(const PreparedSurface& p) {
   return std::abs(p.sheet.topology.components - input.components) + std::abs(p.sheet.topology.genus - input.genus);
 }
 
-void report_sheet(const PreparedSurface& p, RemeshReport& report) {
+void report_sheet(PreparedSurface& p) {
+  RemeshReport& report = p.report;
   report.grid.closing_vox = p.closing_vox;
   report.grid.grown_vox = p.grown.distance_vox;
   report.grid.sites = p.sites.voxels.voxel_count();

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "isoshell/error.h"
-#include "pipeline/grid/timed.h"
 #include "pipeline/sheet/crease_search.h"
 #include "pipeline/sheet/warm_start.h"
 
@@ -31,15 +30,15 @@ LevelOptions level_options(const PreparedSurface& prepared) {
   return {{prepared.target.vertices, options.seed}, relax_options(options), options.tolerance.has_value()};
 }
 
-void relax_meanwhile(PreparedSurface& prepared, RemeshReport& report, Context& context) {
+void relax_meanwhile(PreparedSurface& prepared, Run& run) {
   const std::shared_ptr<CreaseSearch> search = prepared.creases;
   if (!search || !search->goes_on()) return;
   RelaxedMeanwhile made{level_options(prepared), prepared.previous, {}};
   try {
-    made.relaxed = timed(report, "relax", context, [&] {
+    made.relaxed = run.timed("relax", [&] {
       return made.previous
-                 ? from_previous(prepared, context)
-                 : relax_by_levels(prepared, made.options, context, [&] { return search->has_found_curves(); });
+                 ? from_previous(prepared, run.context)
+                 : relax_by_levels(prepared, made.options, run.context, [&] { return search->has_found_curves(); });
     });
   } catch (const Error& error) {  // what may not be needed at all may fail for want of room or memory
     const bool wants_room = dynamic_cast<const NoRoom*>(&error) || error.code() == ErrorCode::out_of_memory;

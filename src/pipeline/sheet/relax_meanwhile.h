@@ -1,6 +1,7 @@
 // The sheet's relaxation on a device while the host looks for creases: a run without any need not wait for the search.
 #pragma once
 
+#include "pipeline/grid/run_log.h"
 #include "pipeline/sheet/hierarchy.h"
 
 namespace isoshell {
@@ -16,7 +17,7 @@ struct RelaxedMeanwhile {
 };
 
 /// Sets prepared.relaxed, where a search for creases goes on that has found none when the sheet is relaxed.
-void relax_meanwhile(PreparedSurface& prepared, RemeshReport& report, Context& context);
+void relax_meanwhile(PreparedSurface& prepared, Run& run);
 
 /// Takes what was relaxed meanwhile, if it began so; else relaxes by levels.
 RelaxedSeeds relaxed_by_levels(const PreparedSurface& prepared, Context& context);
