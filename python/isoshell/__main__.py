@@ -16,7 +16,7 @@ def main() -> int:
 
 def remesh(words: list[str]) -> int:
     """The command vdb_isomesh, and where INPUT or OUTPUT is a file that Python reads and writes, what stands for it."""
-    if any(".usd" in word.lower() or format_of(word) is not None or word.partition("=")[0] == "--fill" for word in words):
+    if any(".usd" in word.lower() or format_of(word) is not None or word.startswith("--fill") for word in words):
         from ._remesh_command import names_ours, run
 
         if names_ours(words):

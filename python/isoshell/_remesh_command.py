@@ -1,5 +1,5 @@
 """The command where INPUT or OUTPUT is a file that only Python reads or writes, a stage of USD or of another package, and
-with --fill FILE, which writes tetrahedra too."""
+with --fill FILE, which writes tetrahedra too, made by --fill-mesher tetgen or gmsh."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, Optional
 
 from ._errors import Error, RunWarning
 from ._exchange import format_of
-from ._fill import check_target
+from ._fill import MESHERS, check_target
 from ._isoshell import VERSION, ErrorCode
 from ._keywords import kinds
 from ._remesh import estimate, remesh
@@ -21,6 +21,7 @@ from ._sequence import Frames, remesh_sequence
 from ._usd import is_usd
 
 PROGRAM = "isoshell remesh"
+OF_FILLING = ("fill", "fill_mesher")  # options of this command alone
 OF_FRAMES = ("velocity", "no_coherence", "keep_going", "resume")
 SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help", "-V": "--version", "-o": "--output"}
 
@@ -28,7 +29,7 @@ SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help", "-V": "--version", 
 def names_ours(words: list[str]) -> bool:
     """Whether INPUT or OUTPUT is one, and nobody asks for the help."""
     places, options = split_words(words)
-    is_ours = "fill" in options or any(is_usd(place) for place in places) or any(
+    is_ours = any(name in options for name in OF_FILLING) or any(is_usd(place) for place in places) or any(
         format_of(place) is not None and not options.get(option)
         for place, option in zip(places, ("input_format", "output_format")))
     return is_ours and not {"help", "version"} & set(options)
@@ -47,7 +48,7 @@ def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
         option, is_joined, value = word[2:].partition("=")
         name = option.replace("-", "_")
         kind = kinds().get(name)
-        if not is_joined and name != "fill" and (kind is None or kind.is_flag):
+        if not is_joined and name not in OF_FILLING and (kind is None or kind.is_flag):
             options[name] = True
             continue
         text = value if is_joined else left.pop(0) if left else ""
@@ -102,6 +103,10 @@ def _check(places: list[str], options: dict[str, Any]) -> None:
         if "frames" in options:
             raise Error("--fill is for one mesh; leave out --frames and name a frame", stage="command line")
         check_target(options["fill"], bool(options.get("force")), [("OUTPUT", place) for place in places[1:2]])
+    elif "fill_mesher" in options:
+        raise Error("--fill-mesher needs --fill FILE", stage="command line")
+    if "fill_mesher" in options and options["fill_mesher"] not in MESHERS:
+        raise Error(f"--fill-mesher is {options['fill_mesher']}; it must be {' or '.join(MESHERS)}", stage="command line")
     alone = [name for name in OF_FRAMES if name in options and "frames" not in options]
     if alone:
         raise Error(f"--{alone[0].replace('_', '-')} needs --frames", stage="command line")
@@ -110,7 +115,7 @@ def _check(places: list[str], options: dict[str, Any]) -> None:
 def _run(places: list[str], options: dict[str, Any]) -> None:
     start = time.perf_counter()
     options.setdefault("progress", "auto")
-    to_fill = options.pop("fill", None)
+    to_fill, mesher = options.pop("fill", None), options.pop("fill_mesher", "tetgen")
     if options.pop("dry_run", False):
         found = estimate(places[0], **options)
         _tell("estimate: " + ", ".join(f"{name} {value}" for name, value in found.items()))
@@ -121,7 +126,7 @@ def _run(places: list[str], options: dict[str, Any]) -> None:
     try:
         result = remesh(places[0], output=places[1], **options)
         if to_fill is not None:
-            filled = result.fill()
+            filled = result.fill(mesher)
             filled.save(to_fill, overwrite=bool(options.get("force")))
             if not options.get("quiet"):
                 _tell(f"{to_fill}: {len(filled.vertices)} vertices, {len(filled.tetrahedra)} tetrahedra")

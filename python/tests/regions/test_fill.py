@@ -83,6 +83,10 @@ def test_the_command_fills_what_it_writes(tmp_path, ball):
     assert remesh([*words, "--fill", str(tmp_path / "full.vtu")]) == 0
     assert len(meshio.read(tmp_path / "full.vtu").cells_dict["tetra"]) > 300
     assert remesh([*words, "--force", f"--fill={tmp_path / 'full.stl'}"]) == 2
+    by_gmsh = ["--fill", str(tmp_path / "gmsh.vtu"), "--fill-mesher", "gmsh"]
+    assert remesh([*words, "--force", *by_gmsh]) == 0 and (tmp_path / "gmsh.vtu").exists()
+    for refused in (["--fill-mesher", "gmsh"], [*by_gmsh[:3], "netgen"]):
+        assert remesh([*words, "--force", *refused]) == 2
     assert remesh([*words, "--force", "--fill", str(tmp_path / "full.vtu")]) == 0
     assert remesh([*words, "--force", "--fill", str(tmp_path / "other.vtu"), "--dry-run"]) == 0
     assert not (tmp_path / "other.vtu").exists()
