@@ -30,6 +30,7 @@ namespace isoshell {
 namespace {
 
 constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no point supports
+constexpr double kNotableLostPart = 0.05;  // of points, by area, that no surface goes through
 constexpr double kNotableJumps = 0.01;     // of the cells that the surface of a volume crosses
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::unreadable_input, "read", message); }
@@ -130,6 +131,10 @@ class Reader {
     note(text.str());
     if (points.normals_ignored) warn("its normals do not fit its points; others were estimated");
     if (points.outliers > 0) warn(counted(points.outliers, "point") + " left out, far from all others");
+    if (1 - points.held_part >= kNotableLostPart)
+      warn(std::to_string(std::lround(100 * (1 - points.held_part))) +
+           " % of the points are far from the surface that was found, as of thin or scattered things: thin the cloud "
+           "out to one density, give normals, or leave such points out");
     if (points.open_part >= kNotableOpenPart)
       warn(std::to_string(std::lround(100 * points.open_part)) + " % of the surface has no points near it and " +
            (keep_open ? "was left out" : "was closed smoothly; --boundary keep leaves it open"));

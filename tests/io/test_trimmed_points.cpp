@@ -101,3 +101,20 @@ TEST_CASE("trimmed points: where no point has others around it, nothing is left,
   CHECK(topology_of(surface(few, false)).closed);
   CHECK(contains(message_of(ErrorCode::nothing_to_mesh, [&] { surface(few, true); }), "leave that out"));
 }
+
+TEST_CASE("points of flat ground with trees over it become the ground, though a body of flat sides is none of it",
+          "[points][unit]") {
+  for (const int trees : {3, 12, 20}) {
+    INFO(trees << " trees");
+    PointCloud cloud = sheet(3000, 0, 0);
+    for (int i = 0; i < trees * 60; ++i) {
+      const auto at = [&](uint64_t axis) { return random(axis, uint64_t(i)) - .5; };
+      const uint64_t tree = uint64_t(i % trees);
+      cloud.position.push_back({random(7, tree) + .06 * at(4), random(8, tree) + .06 * at(5), .08 + .06 * at(6)});
+    }
+    PointSurfaceInfo info;
+    const TriangleSoup surface = surface_of_points(cloud, 0, info, VolumeCreases::all);
+    CHECK(area_of(surface) > 1);
+    CHECK(info.held_part > .8);
+  }
+}
