@@ -99,6 +99,9 @@ class Extract(Size):
     smallest_island: IntProperty(name="Smallest Island", default=8, min=0, soft_max=1000,
                                  description="Of a grid of labels: islands of fewer voxels get the label around them, "
                                              "but the largest one of each region")
+    smoothing: FloatProperty(name="Smoothing", default=0.5, min=0, max=1,
+                             description="Of a grid of labels: how far, in voxels, walls may leave the faces of their "
+                                         "voxels to be smooth. At 0 they are these faces, flat, with creases")
     split_regions: BoolProperty(name="Split Regions", default=False,
                                 description="Of a grid of labels: an object for each region, closed, in a collection "
                                             "with the name of the volume. Otherwise one mesh has all walls once")
@@ -106,7 +109,7 @@ class Extract(Size):
     def keywords_of_labels(self):
         """Of isoshell.remesh, for a grid of labels."""
         words = {"background": self.background} if self.use_background else {}
-        return super().keywords() | words | {"smallest_island": self.smallest_island}
+        return super().keywords() | words | {"smallest_island": self.smallest_island, "smoothing": self.smoothing}
 
     def keywords_of_values(self, grid_class):
         """Of isoshell.remesh, for a grid of values. What stands for no threshold is the library's to say."""
@@ -130,6 +133,7 @@ class Extract(Size):
         if self.use_background:
             labels.prop(self, "background")
         labels.prop(self, "smallest_island")
+        labels.prop(self, "smoothing")
         labels.prop(self, "split_regions")
         layout.prop(self, "device")
 

@@ -11,7 +11,7 @@ from .mesh_result import in_object
 from .mesh_source import Refused, linear_of
 
 OF_LABELS = {"INT", "INT64"}
-OF_THE_GRID = {"iso", "background", "smallest_island"}  # options that a mesh of it has no use for
+OF_THE_GRID = {"iso", "background", "smallest_island", "smoothing"}  # options that a mesh of it has no use for
 FINER = 4  # times as many vertices has the mesh that is made first where the object's scale is not even
 
 

@@ -37,10 +37,13 @@ class Labels:
         background: the label of what is no region.
         smallest_island: islands of fewer voxels, connected through faces, get the label around them, which is warned of;
             the largest one of each region stays. 0: all stay.
+        smoothing: how far, in voxels, walls may leave the faces of their voxels along each axis to be smooth, 0 to 1; at 0
+            they are these faces, flat, and where they turn are creases.
     """
 
     def __init__(self, array: Any, spacing: Any = (1, 1, 1), origin: Any = (0, 0, 0), affine: Any = None,
-                 names: Optional[Mapping[int, str]] = None, background: int = 0, smallest_island: int = 8) -> None:
+                 names: Optional[Mapping[int, str]] = None, background: int = 0, smallest_island: int = 8,
+                 smoothing: float = 0.5) -> None:
         self.array = array
         self.spacing = spacing
         self.origin = origin
@@ -48,6 +51,7 @@ class Labels:
         self.names = dict(names or {})
         self.background = background
         self.smallest_island = smallest_island
+        self.smoothing = smoothing
 
     def __repr__(self) -> str:
         names = f", {len(self.names)} names" if self.names else ""
@@ -83,7 +87,15 @@ def lattice_of(labels: Labels) -> _isoshell.LabelLattice:
         origin, steps = _of_affine(labels)
     names = {label_of("a key of names", label): _name(label, name) for label, name in labels.names.items()}
     return _isoshell.LabelLattice(origin, steps, label_of("background", labels.background), names,
-                                  label_of("smallest_island", labels.smallest_island))
+                                  label_of("smallest_island", labels.smallest_island),
+                                  _smoothing(labels.smoothing))
+
+
+def _smoothing(value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise Error(f"smoothing is {value!r}; it must be a number from 0 to 1") from None
 
 
 def _of_spacing(spacing: Any, origin: Any) -> tuple[Triple, list[Triple]]:

@@ -39,6 +39,7 @@ LabelVolume label_volume_of(const AnyArray& labels, const LabelLattice& lattice)
   volume.origin_world = point_of(lattice.origin);
   volume.background = lattice.background;
   volume.smallest_island_vox = lattice.smallest_island_vox;
+  volume.smoothing_vox = lattice.smoothing_vox;
   for (const auto& [label, name] : lattice.names) volume.names.push_back({label, name});
   return volume;
 }
@@ -48,13 +49,14 @@ void bind_labels(nb::module_& m) {
       .def(
           "__init__",
           [](LabelLattice* self, const Triple& origin, const std::array<Triple, 3>& steps, int32_t background,
-             std::map<int32_t, std::string> names, int64_t smallest_island) {
-            new (self) LabelLattice{origin, steps, background, std::move(names), smallest_island};
+             std::map<int32_t, std::string> names, int64_t smallest_island, double smoothing) {
+            new (self) LabelLattice{origin, steps, background, std::move(names), smallest_island, smoothing};
           },
           nb::arg("origin"), nb::arg("steps"), nb::arg("background"), nb::arg("names"), nb::arg("smallest_island"),
+          nb::arg("smoothing"),
           nb::sig("def __init__(self, origin: collections.abc.Sequence[float], steps: "
                   "collections.abc.Sequence[collections.abc.Sequence[float]], background: int, names: dict[int, str], "
-                  "smallest_island: int) -> None"));
+                  "smallest_island: int, smoothing: float) -> None"));
   m.def("write_labels", write, nb::arg("path"), nb::arg("labels"), nb::arg("lattice"), nb::arg("overwrite"),
         nb::sig("def write_labels(path: str, labels: typing.Any, lattice: LabelLattice, overwrite: bool) -> None"));
 }

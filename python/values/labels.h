@@ -21,6 +21,7 @@ struct LabelLattice {
   int32_t background = 0;
   std::map<int32_t, std::string> names;
   int64_t smallest_island_vox = 8;
+  double smoothing_vox = 0.5;
 };
 
 /// Throws: usage, as labels_of() does.

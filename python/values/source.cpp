@@ -39,8 +39,8 @@ using Triple = std::array<double, 3>;
 
 /// Of what is in memory and no volume of labels.
 void refuse_label_options(const RunRequest& request) {
-  if (request.input.labels.background) refuse("--background is for volumes of labels; leave it out");
-  if (request.input.labels.smallest_island_vox) refuse("--smallest-island is for volumes of labels; leave it out");
+  if (const char* const option = request.input.labels.given())
+    throw Error(ErrorCode::usage, "arguments", std::string(option) + " is for volumes of labels; leave it out");
 }
 /// Of what is no volume.
 void refuse_volume_options(const RunRequest& request) {
@@ -161,7 +161,7 @@ Source labels(const AnyArray& values, const LabelLattice& lattice) {
           [given](const RunRequest& request, const Context& context) {
             if (request.input.iso) refuse("--iso is for volumes; leave it out");
             if (request.input.labels.given())
-              refuse("--background and --smallest-island are for files; give them to isoshell.Labels");
+              refuse("--background, --smallest-island and --smoothing are for files; give them to isoshell.Labels");
             return input_of(std::move(*given), "labels", context, request.tell);
           },
           {},

@@ -127,7 +127,7 @@ TEST_CASE("a wall to background inside of a volume is straight up to the volume'
 TEST_CASE("curves between grains stay apart where they run side by side") {
   const CpuContext context;
   const LabelWalls walls = find_label_walls(voronoi_grains(64, 60), context);
-  const std::vector<PointQ8> position = fair_walls(walls, context);
+  const std::vector<PointQ8> position = fair_walls(walls, 0.5, context);
   const WallLinks links(walls, faces_at_vertices(walls));
   int64_t pairs = 0;
   int32_t least_q8 = kOneVoxelQ8;

@@ -21,7 +21,7 @@ void set_iso(const std::string& text, Arguments& a) {
 }
 
 constexpr OptionRange kLabels{double(std::numeric_limits<int32_t>::min()), double(std::numeric_limits<int32_t>::max())};
-constexpr OptionRange kIslands{0, kLabels.high};
+constexpr OptionRange kIslands{0, kLabels.high}, kSmoothing{0, 1};
 
 void set_background(const std::string& text, Arguments& a) {
   const int64_t label = parse_whole("--background", text);
@@ -33,6 +33,12 @@ void set_smallest_island(const std::string& text, Arguments& a) {
   const int64_t voxels = parse_whole("--smallest-island", text);
   check_range("--smallest-island", double(voxels), kIslands);
   a.run.input.labels.smallest_island_vox = voxels;
+}
+
+void set_smoothing(const std::string& text, Arguments& a) {
+  const double voxels = parse_number("--smoothing", text);
+  check_range("--smoothing", voxels, kSmoothing);
+  a.run.input.labels.smoothing_vox = voxels;
 }
 
 void set_threads(const std::string& text, Arguments& a) {
@@ -109,6 +115,11 @@ std::vector<CommandOption> file_options() {
         "region; 0: none do",
         "8", false, false, kIslands},
        set_smallest_island},
+      {{group, "smoothing", "VOX",
+        "of a volume of labels: how far, in voxels, walls may leave the faces of their voxels to be smooth; at 0 they "
+        "are these faces, flat, with creases where they turn",
+        "0.5", false, false, kSmoothing},
+       set_smoothing},
       {{group, "input-format", "F", "format of INPUT: " + listed_formats(reads_anything), "by its name"},
        [](const std::string& text, Arguments& a) { a.run.input.format = text; }},
       {{group, "output-format", "F", "format of OUTPUT: " + listed_formats(writes_mesh, ", ") + " or vdb",

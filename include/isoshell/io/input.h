@@ -26,7 +26,15 @@ struct LabelReading {
   std::optional<int32_t> background;           ///< the label of what is no region
   std::optional<int64_t> smallest_island_vox;  ///< islands of fewer voxels get the label around them
 
-  bool given() const { return background || smallest_island_vox; }
+  std::optional<double> smoothing_vox;  ///< how far walls may leave the faces of their voxels
+
+  /// The option that was given first; null where none was.
+  const char* given() const {
+    return background            ? "--background"
+           : smallest_island_vox ? "--smallest-island"
+           : smoothing_vox       ? "--smoothing"
+                                 : nullptr;
+  }
 };
 
 /// A file and what is needed to read it.
@@ -52,9 +60,7 @@ struct InputFacts {
   InputKind kind = InputKind::mesh;
   int64_t vertices = -1, faces = -1;  ///< as in the file, of points the different ones; -1: of a stage file not known
   std::optional<WorldPoint> box_min, box_max;  ///< of the surface, world units; of a stage file not known
-  std::vector<RegionWall> walls;  ///< of a surface that parts regions, once islands are absorbed; ascending
-  std::vector<std::array<int32_t, 2>> absorbed_walls;  ///< as in TriangleSoup
-  std::vector<RegionName> region_names;                ///< ascending by label
+  SurfaceRegions regions;                      ///< of the surface, once islands are absorbed
 
   /// As messages call it.
   std::string name() const { return path == "-" ? "standard input" : path; }

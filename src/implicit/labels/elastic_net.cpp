@@ -11,7 +11,8 @@ using Kind = WallLinks::Kind;
 
 /// Sheets of one voxel stay so thick that edges longer than that follow both of their sides. Where regions meet in
 /// curves, the thin end of a wedge is no sheet. Voxels cut such ends off, and the curve itself may lie beyond them.
-constexpr int32_t kReach = kOneVoxelFine / 2, kThinReach = kOneVoxelFine * 3 / 8, kCurveReach = kOneVoxelFine * 5 / 8;
+constexpr double kThinPart = 3. / 4, kCurvePart = 5. / 4;  ///< of the reach of other vertices
+constexpr int32_t kMostOfThin = kOneVoxelFine * 3 / 8;
 /// Curves on both sides of a face go no farther towards each other where they are a voxel apart: of the strip of wall
 /// between them is left as much as triangles without small angles need.
 constexpr int32_t kStripReach = kOneVoxelFine * 5 / 16;
@@ -32,18 +33,25 @@ FinePoint share_of(int32_t share, const FinePoint& p) {
 
 }  // namespace
 
-ElasticNet::ElasticNet(const LabelWalls& walls, const Buckets<uint32_t>& faces_at)
+ElasticNet::ElasticNet(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, double farthest_vox)
     : walls_(walls), links_(walls, faces_at), at_(walls.rest_halves.size()), bend_(at_.size()), box_(at_.size()) {
   for_each_index(size_t(0), at_.size(), [&](size_t v) {
     const Voxel& h = walls.rest_halves[v];
     at_[v] = FinePoint{rest_of(h.x), rest_of(h.y), rest_of(h.z), 0};
-    box_[v] = box_of(v, faces_at);
+    box_[v] = box_of(v, farthest_vox, faces_at);
   });
 }
 
-ElasticNet::Box ElasticNet::box_of(size_t vertex, const Buckets<uint32_t>& faces_at) const {
+int32_t ElasticNet::reach_of(size_t vertex, double farthest_vox) const {
+  const bool is_thin = walls_.is_thin[vertex];
+  const double part = is_thin ? kThinPart : links_.is_on_curve(vertex) ? kCurvePart : 1;
+  const auto reach = int32_t(part * farthest_vox * kOneVoxelFine);
+  return is_thin ? std::min(reach, kMostOfThin) : reach;
+}
+
+ElasticNet::Box ElasticNet::box_of(size_t vertex, double farthest_vox, const Buckets<uint32_t>& faces_at) const {
   const bool is_on_curve = links_.is_on_curve(vertex);
-  const int32_t reach = walls_.is_thin[vertex] ? kThinReach : is_on_curve ? kCurveReach : kReach;
+  const int32_t reach = reach_of(vertex, farthest_vox);
   const FinePoint& rest = at_[vertex];
   Box box{rest - all_along(reach), rest + all_along(reach)};
   keep_on_sides(vertex, box);
@@ -54,7 +62,7 @@ ElasticNet::Box ElasticNet::box_of(size_t vertex, const Buckets<uint32_t>& faces
       const Voxel &own = walls_.rest_halves[vertex], &other = walls_.rest_halves[v];
       const int32_t way[3] = {other.x - own.x, other.y - own.y, other.z - own.z};
       for (int axis = 0; axis < 3; ++axis) {
-        const int32_t reach_of_strip = kStripReach * std::abs(way[axis]) / 2;
+        const int32_t reach_of_strip = std::min(reach, kStripReach) * std::abs(way[axis]) / 2;
         if (way[axis] < 0) box.low[axis] = std::max(box.low[axis], rest[axis] - reach_of_strip);
         if (way[axis] > 0) box.high[axis] = std::min(box.high[axis], rest[axis] + reach_of_strip);
       }

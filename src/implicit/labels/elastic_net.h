@@ -22,8 +22,9 @@ using FinePoint = int32_t __attribute__((vector_size(16)));
 /// along each axis (see box_of). Sums are of integers, and every product is rounded alone: no order shows.
 class ElasticNet {
  public:
-  /// Every vertex is at rest. The walls must outlive it.
-  ElasticNet(const LabelWalls& walls, const Buckets<uint32_t>& faces_at);
+  /// Every vertex is at rest, and goes no farther than that along an axis, a quarter more on curves. The walls must
+  /// outlive it.
+  ElasticNet(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, double farthest_vox);
 
   /// Every vertex goes this share of the way to the mean of its neighbours, one of curves that of those along curves.
   void step(double share);
@@ -50,7 +51,8 @@ class ElasticNet {
     FinePoint low, high;
   };
 
-  Box box_of(size_t vertex, const Buckets<uint32_t>& faces_at) const;
+  int32_t reach_of(size_t vertex, double farthest_vox) const;
+  Box box_of(size_t vertex, double farthest_vox, const Buckets<uint32_t>& faces_at) const;
   void keep_on_sides(size_t vertex, Box& box) const;
   FinePoint mean_way(size_t vertex, const std::vector<FinePoint>& field, int32_t share) const;
   FinePoint pull_of(uint32_t beside) const;

@@ -89,8 +89,9 @@ struct FairedWalls {
   std::vector<PointQ8> parted, position;  ///< after the first step, and after all of them
 };
 
-FairedWalls fair_in_steps(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, const Context& context) {
-  ElasticNet net(walls, faces_at);
+FairedWalls fair_in_steps(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, double smoothing_vox,
+                          const Context& context) {
+  ElasticNet net(walls, faces_at, smoothing_vox);
   net.step(kFirstShare);
   FairedWalls out;
   out.parted = net.rounded();
@@ -112,9 +113,9 @@ FairedWalls fair_in_steps(const LabelWalls& walls, const Buckets<uint32_t>& face
 
 }  // namespace
 
-std::vector<PointQ8> fair_walls(const LabelWalls& walls, const Context& context) {
+std::vector<PointQ8> fair_walls(const LabelWalls& walls, double smoothing_vox, const Context& context) {
   const Buckets<uint32_t> faces_at = faces_at_vertices(walls);
-  FairedWalls faired = fair_in_steps(walls, faces_at, context);
+  FairedWalls faired = fair_in_steps(walls, faces_at, smoothing_vox, context);
   tell_read(context, kFaired);
   part_crossing(walls, faces_at, faired.parted, faired.position, context);
   return std::move(faired.position);

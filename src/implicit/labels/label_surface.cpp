@@ -1,6 +1,7 @@
 // surface_of_labels (see isoshell/io/memory_input.h).
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -38,6 +39,11 @@ void check_volume(const LabelVolume& volume, const std::string& name) {
   if (voxels != int64_t(volume.labels.size()))
     refuse_use(name + ": there are " + std::to_string(volume.labels.size()) + " labels for " + std::to_string(voxels) +
                " voxels; give one a voxel");
+  if (!(volume.smoothing_vox >= 0 && volume.smoothing_vox <= 1)) {
+    std::ostringstream text;
+    text << name << ": smoothing is " << volume.smoothing_vox << " voxels; it must be 0 to 1";
+    refuse_use(text.str());
+  }
   const double spanned = spanned_world(volume);
   if (!std::isfinite(spanned) || spanned == 0 || !std::isfinite(length_sq(volume.origin_world)))
     refuse_use(name + ": its steps from voxel to voxel span no volume; give three finite ones that do");
@@ -100,7 +106,16 @@ void tell_of(const AbsorbedIslands& absorbed, const LabelVolume& volume, const T
   tell(MessageKind::warning, text);
 }
 
-/// Walls that are faired, with what of them is no geometry.
+/// The corners of the faces of voxels.
+std::vector<PointQ8> at_rest(const LabelWalls& walls) {
+  std::vector<PointQ8> out;
+  out.reserve(walls.rest_halves.size());
+  for (const Voxel& halves : walls.rest_halves)
+    out.push_back({halves.x * (kOneVoxelQ8 / 2), halves.y * (kOneVoxelQ8 / 2), halves.z * (kOneVoxelQ8 / 2)});
+  return out;
+}
+
+/// Walls with vertices here, with what of them is no geometry. Walls that are faces of voxels are as those of any mesh.
 TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, const LabelVolume& volume) {
   TriangleSoup soup;
   soup.triangles.reserve(2 * walls.faces.size());
@@ -118,8 +133,12 @@ TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, 
   soup.vertices.resize(fair.size());
   for_each_index(size_t(0), fair.size(), [&](size_t v) { soup.vertices[v] = to_world(volume, fair[v]); });
   soup.regions.background = volume.background;
-  soup.regions.are_of_voxels = true;
-  soup.regions.voxel_size_world = voxel_size_world(volume);
+  if (volume.smoothing_vox > 0) {
+    soup.regions.are_of_voxels = true;
+    soup.regions.voxel_size_world = voxel_size_world(volume);
+  } else {
+    soup.regions.side.clear();
+  }
   soup.regions.names = volume.names;
   soup.faces_in_file = int64_t(walls.faces.size());
   return soup;
@@ -142,7 +161,8 @@ TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const C
         ErrorCode::nothing_to_mesh, "read",
         name + ": all its voxels are background, " + std::to_string(volume.background) + "; regions have other labels");
   tell_read(context, kWallsFound);
-  TriangleSoup soup = soup_of(walls, fair_walls(walls, context), volume);
+  TriangleSoup soup = soup_of(
+      walls, volume.smoothing_vox > 0 ? fair_walls(walls, volume.smoothing_vox, context) : at_rest(walls), volume);
   soup.absorbed_walls = std::move(absorbed.lost_pairs);
   return soup;
 }
