@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "isoshell/backend.h"
+#include "isoshell/quality.h"
 #include "isoshell/triangle_mesh.h"
 
 namespace isoshell {
@@ -74,6 +75,7 @@ struct MeshCensus {
   ValenceCounts valence;
   EdgeStatistics edges;
   TriangleShapes shapes;
+  LeastDihedral dihedral;
   double diagonal_world = 0;  ///< of the bounding box of referenced vertices
   int64_t intersecting_pairs = 0, intersecting_triangles = 0;
 };

@@ -17,6 +17,7 @@ struct PartOptions {
   std::string parts;
   double near_world = 0;  ///< what is nearer is made one; so is what is nearer than 2^-21 of the longest side
   double thin_world = 0;  ///< cells that are thinner, twice their volume over their area, belong to those beside them
+  double gap_world = 0;   ///< regions that are nearer than that and share no wall are named
 };
 /// As a run with these options parts it: what rounding to its lattice would make meet is one, and what it would turn
 /// over is no region. Throws: as remesh() for its count and edge length. Cost: linear.

@@ -12,6 +12,17 @@ struct PoorAngle {
   WorldPoint middle{0, 0, 0};  ///< of the triangle
 };
 
+/// The smallest angle that two triangles with a common edge have between them, 180 degrees where all are flat, and the
+/// middle of that edge. Mesh generators that fill a surface take no angles near zero.
+struct LeastDihedral {
+  double degrees = 180;
+  WorldPoint middle{0, 0, 0};
+};
+
+/// Result: the same for every number of threads; of equal angles that of the first edge. Triangles without area have
+/// none. Cost: O(triangles), and a list of half-edges. Throws: usage when an index is out of range.
+LeastDihedral find_least_dihedral(const TriangleMesh& mesh);
+
 /// Zero for a mesh without triangles.
 struct MeshQuality {
   double q_min = 0;  ///< Q = 6 / sqrt(3) * inradius / longest edge; 1 for the equilateral triangle
@@ -24,12 +35,13 @@ struct MeshQuality {
   int64_t below_30_deg = 0;            ///< how many these are
   std::vector<PoorAngle> poor_angles;  ///< the worst of them, at most kMostPoorAngles
   static constexpr int64_t kMostPoorAngles = 8;
+  LeastDihedral dihedral;
   double irregular_ratio = 0;  ///< vertices that not exactly six triangles share, of the vertices that have any
   double edge_cv = 0;          ///< standard deviation over mean of the edge lengths, each side of an edge counted
   double area_cv = 0;          ///< of the triangle areas
 };
 
-/// Result: sums run in one fixed shape, so threads do not matter. Cost: one pass; 8 bytes a vertex.
+/// Result: sums run in one fixed shape, so threads do not matter. Cost: one pass, and a list of half-edges.
 /// Throws: usage when an index is out of range.
 MeshQuality measure_quality(const TriangleMesh& mesh);
 

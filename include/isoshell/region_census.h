@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,8 +41,16 @@ struct RegionWall {
   double area_world = 0;
 };
 
-/// The walls of a surface, ascending. Result: the same for every number of threads. Cost: a sort of the faces.
-std::vector<RegionWall> find_region_walls(const TriangleSoup& surface);
+/// What is known of the regions of a surface before it is meshed.
+struct SurfaceRegions {
+  std::vector<RegionWall> walls;                       ///< ascending
+  std::map<int32_t, double> volume_world;              ///< by label; of what faces do not close it means nothing
+  std::vector<std::array<int32_t, 2>> absorbed_walls;  ///< as in TriangleSoup
+  std::vector<RegionName> names;                       ///< ascending by label
+};
+
+/// Nothing of a surface without regions. Result: the same for every number of threads. Cost: a sort of the faces.
+SurfaceRegions regions_of_surface(const TriangleSoup& surface);
 
 struct RegionCensus {
   int32_t background = 0;             ///< is no region
@@ -69,6 +79,17 @@ struct RegionCensus {
 RegionCensus take_region_census(const TriangleMesh& mesh, Context& context,
                                 std::optional<int64_t> intersecting_pairs = {});
 
+/// Of a region of the surface, and of the mesh.
+struct RegionVolumes {
+  static constexpr double kNotablePct = 2;  ///< what is more is told
+
+  RegionName region;
+  double before_world = 0, after_world = 0;
+
+  double change_pct() const { return before_world > 0 ? 100 * (after_world / before_world - 1) : 0; }
+  bool has_changed() const { return std::abs(change_pct()) > kNotablePct; }
+};
+
 /// What of the regions of a surface a mesh of it has not, or has beyond. Names are empty where there is none.
 struct RegionChanges {
   std::vector<RegionName> lost;                       ///< regions, ascending
@@ -76,15 +97,13 @@ struct RegionChanges {
   std::vector<std::array<RegionName, 2>> new_walls;   ///< pairs that shared none before
   /// Pairs of a volume of labels that touched in absorbed islands alone: no loss, as that is asked for.
   std::vector<std::array<RegionName, 2>> absorbed_walls;
+  std::vector<RegionVolumes> volumes;  ///< of closed regions that are there before and after, ascending
 
   bool any() const { return !lost.empty() || !lost_walls.empty() || !new_walls.empty(); }
 };
 
-/// Of walls without area none counts. `absorbed`: as in TriangleSoup; `names`: ascending by label; the background is
-/// called so.
-RegionChanges find_region_changes(const std::vector<RegionWall>& before,
-                                  const std::vector<std::array<int32_t, 2>>& absorbed,
-                                  const std::vector<RegionName>& names, const RegionCensus& after);
+/// Of walls without area none counts. The background is called so.
+RegionChanges find_region_changes(const SurfaceRegions& before, const RegionCensus& after);
 
 /// A region by itself: its faces without its sheets, in their order, turned outward, and their vertices, in theirs.
 /// Where it touches itself in a vertex or along an edge, each fan of faces has a vertex of its own, one behind the

@@ -59,6 +59,8 @@ class Options(TypedDict, total=False):
         background: of a volume of labels: the label of what is no region [that around the labels, mostly 0].
         smallest_island: of a volume of labels: islands of fewer voxels get the label around them, but the largest one
             of each region; 0: none do [8].
+        smoothing: of a volume of labels: how far, in voxels, walls may leave the faces of their voxels to be smooth; at
+            0 they are these faces, flat, with creases where they turn [0.5].
         input_format: format of INPUT: ply, obj, stl, off, glb, gltf, xyz, pcd, vdb or nvdb [by its name].
         output_format: format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb [by its name].
         save_shell: also write the shell, to resume from.
@@ -77,11 +79,12 @@ class Options(TypedDict, total=False):
         require: exit with status 6 unless the result meets every requirement of this comma-separated list: closed,
             manifold, no-self-intersections, genus=G, components=N, boundary-loops=N, regions (each is closed, walls are
             shared, no triangles intersect), adjacency (regions that touch in the input share a wall, and no others do),
-            min-angle=DEG (smallest angle in degrees), max-deviation=W (distance between result and input in world
-            units), normal-deviation=DEG (mean angle between normals of result and input), count (as many vertices as
-            were asked for, to a tenth), features (no curve of the input is lost), kept-edges=PERCENT (of a frame that
-            follows another: edges that it keeps, at least), born=N (of a frame that follows another: vertices that are
-            new, at most).
+            region-volume=PERCENT (by which the volume of a region may differ from the input's), min-angle=DEG (smallest
+            angle in degrees), min-dihedral=DEG (smallest angle between triangles with a common edge), max-deviation=W
+            (distance between result and input in world units), normal-deviation=DEG (mean angle between normals of
+            result and input), count (as many vertices as were asked for, to a tenth), features (no curve of the input
+            is lost), kept-edges=PERCENT (of a frame that follows another: edges that it keeps, at least), born=N (of a
+            frame that follows another: vertices that are new, at most).
         allow_intersections: exit with status 0, not 6, where the result intersects itself.
         device: device to run on [auto].
         threads: number of CPU threads [all].
@@ -120,6 +123,7 @@ class Options(TypedDict, total=False):
     iso: Optional[float]
     background: Optional[int]
     smallest_island: Optional[int]
+    smoothing: Optional[int]
     input_format: Optional[str]
     output_format: Optional[str]
     save_shell: Optional[Path]

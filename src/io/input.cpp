@@ -69,9 +69,8 @@ void check_points(const PointCloud& cloud, const std::string& name) {
 [[noreturn]] void refuse_iso() { refuse_use("--iso is for volumes; leave it out"); }
 
 void check_no_labels(const LabelReading& labels) {
-  if (labels.given())
-    refuse_use(std::string(labels.background ? "--background" : "--smallest-island") +
-               " is for volumes of labels; leave it out");
+  if (const char* const option = labels.given())
+    refuse_use(std::string(option) + " is for volumes of labels; leave it out");
 }
 
 class Reader {
@@ -109,11 +108,7 @@ class Reader {
     const WorldBox box = bounding_box(soup);
     facts.box_min = box.min;
     facts.box_max = box.max;
-    if (!soup.regions.empty()) {
-      facts.walls = find_region_walls(soup);
-      facts.absorbed_walls = soup.absorbed_walls;
-      facts.region_names = soup.regions.names;
-    }
+    facts.regions = regions_of_surface(soup);
     note(counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));
     input_.soup = std::move(soup);
   }
@@ -211,6 +206,7 @@ class Reader {
     if (request.iso) refuse_iso();  // before the labels are read
     LabelGrid grid = read_label_grid(source, {request.grid, context_.memory_limit_bytes, request.labels.background});
     if (request.labels.smallest_island_vox) grid.volume.smallest_island_vox = *request.labels.smallest_island_vox;
+    if (request.labels.smoothing_vox) grid.volume.smoothing_vox = *request.labels.smoothing_vox;
     hold(std::move(grid.volume), "grid " + grid.name + ", ");
   }
 

@@ -144,6 +144,7 @@ MeshCensus take_census(const TriangleMesh& mesh, Context& context, int64_t dropp
                       edges.valence,
                       edges.edges,
                       measure_shapes(mesh, dropped),
+                      find_least_dihedral(mesh),
                       length(box.max - box.min),
                       crossing.pairs,
                       int64_t(crossing.triangles.size())};

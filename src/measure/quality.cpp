@@ -120,6 +120,7 @@ MeshQuality measure_quality(const TriangleMesh& mesh) {
   quality.below_30_deg_pct = 100 * double(all.below_30) / n;
   quality.below_30_deg = all.below_30;
   if (all.below_30 > 0) quality.poor_angles = poor_angles(mesh);
+  quality.dihedral = find_least_dihedral(mesh);
   quality.irregular_ratio = irregular_share(mesh);
   quality.edge_cv = all.edge.variation(3 * n);
   quality.area_cv = all.area.variation(n);

@@ -121,7 +121,24 @@ int64_t count_duplicate_faces(const TriangleMesh& mesh, const std::vector<uint32
 
 }  // namespace
 
-std::vector<RegionWall> find_region_walls(const TriangleSoup& surface) { return count_walls(surface); }
+SurfaceRegions regions_of_surface(const TriangleSoup& surface) {
+  SurfaceRegions regions;
+  if (surface.regions.empty()) return regions;
+  const WorldBox box = box_of(surface.vertices, surface.triangles);
+  const WorldPoint middle = .5 * (box.min + box.max);
+  for (size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const auto at = [&](uint32_t v) { return surface.vertices[v] - middle; };
+    const double volume = dot(at(a), cross(at(b), at(c))) / 6;
+    regions.volume_world[surface.regions.labels[t][0]] += volume;
+    regions.volume_world[surface.regions.labels[t][1]] -= volume;
+  }
+  regions.volume_world.erase(surface.regions.background);
+  regions.walls = count_walls(surface);
+  regions.absorbed_walls = surface.absorbed_walls;
+  regions.names = surface.regions.names;
+  return regions;
+}
 
 RegionCensus take_region_census(const TriangleMesh& mesh, Context& context, std::optional<int64_t> intersecting_pairs) {
   require_regions(mesh);

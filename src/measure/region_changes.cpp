@@ -50,17 +50,19 @@ std::set<int32_t> labels_of(const std::set<Pair>& pairs) {
 
 }  // namespace
 
-RegionChanges find_region_changes(const std::vector<RegionWall>& before, const std::vector<Pair>& absorbed,
-                                  const std::vector<RegionName>& names, const RegionCensus& after) {
-  const Namer named(names, after.background);
-  const std::set<Pair> then = pairs_of(before), now = pairs_of(after.walls);
+RegionChanges find_region_changes(const SurfaceRegions& before, const RegionCensus& after) {
+  const Namer named(before.names, after.background);
+  const std::set<Pair> then = pairs_of(before.walls), now = pairs_of(after.walls);
   const std::set<int32_t> left = labels_of(now);
   RegionChanges changes;
   for (const int32_t label : labels_of(then))
     if (left.count(label) == 0 && label != after.background) changes.lost.push_back(named(label));
   changes.lost_walls = named.difference(then, now);
   changes.new_walls = named.difference(now, then);
-  changes.absorbed_walls = named.difference({absorbed.begin(), absorbed.end()}, {});
+  changes.absorbed_walls = named.difference({before.absorbed_walls.begin(), before.absorbed_walls.end()}, {});
+  for (const RegionCounts& region : after.regions)
+    if (const auto was = before.volume_world.find(region.label); region.closed && was != before.volume_world.end())
+      changes.volumes.push_back({named(region.label), was->second, region.volume_world});
   return changes;
 }
 

@@ -1,6 +1,7 @@
 #include "isoshell/run/gates.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <variant>
 
@@ -41,7 +42,9 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
-std::string shown(const RegionCounts& region) {
+/// Of RegionCounts, and of RegionName.
+template <class Region>
+std::string shown(const Region& region) {
   return text("region ", region.label, region.name.empty() ? "" : " (" + region.name + ")");
 }
 
@@ -72,6 +75,18 @@ std::string miss_regions(const Gates&, const Measured& m) {
 
 std::string miss_adjacency(const Gates&, const Measured& m) {
   return m.region_changes ? words_of(*m.region_changes) : "the input has no regions";
+}
+
+std::string miss_region_volume(const Gates& g, const Measured& m) {
+  if (!m.region_changes) return "the input has no regions";
+  const std::vector<RegionVolumes>& volumes = m.region_changes->volumes;
+  const auto worst = std::max_element(volumes.begin(), volumes.end(), [](const auto& a, const auto& b) {
+    return std::abs(a.change_pct()) < std::abs(b.change_pct());
+  });
+  if (!m.region_changes->lost.empty()) return shown(m.region_changes->lost.front()) + " is lost";
+  if (worst == volumes.end() || std::abs(worst->change_pct()) <= *g.region_volume_pct) return "";
+  return text(shown(worst->region), " has ", worst->after_world, " of ", worst->before_world, ", ", worst->change_pct(),
+              " %");
 }
 
 std::string miss_closed(const Gates&, const Measured& m) {
@@ -116,6 +131,12 @@ std::string miss_boundary_loops(const Gates& g, const Measured& m) {
 std::string miss_min_angle(const Gates& g, const Measured& m) {
   const double smallest = measured(m.quality, "quality").theta_min_deg;
   return smallest >= *g.min_angle_deg ? "" : text("the smallest angle is ", smallest);
+}
+
+std::string miss_min_dihedral(const Gates& g, const Measured& m) {
+  const LeastDihedral& least = measured(m.quality, "quality").dihedral;
+  if (least.degrees >= *g.min_dihedral_deg) return "";
+  return text("two triangles meet at ", least.degrees, " degrees near ", exact_place(least.middle));
 }
 
 std::string miss_max_deviation(const Gates& g, const Measured& m) {
@@ -180,7 +201,21 @@ const std::vector<GateRow>& rows() {
        {},
        GateOf::input,
        miss_adjacency},
+      {"region-volume",
+       "PERCENT",
+       "by which the volume of a region may differ from the input's",
+       &Gates::region_volume_pct,
+       {0, 100},
+       GateOf::input,
+       miss_region_volume},
       {"min-angle", "DEG", "smallest angle in degrees", &Gates::min_angle_deg, {0, 60}, GateOf::mesh, miss_min_angle},
+      {"min-dihedral",
+       "DEG",
+       "smallest angle between triangles with a common edge",
+       &Gates::min_dihedral_deg,
+       {0, 180},
+       GateOf::mesh,
+       miss_min_dihedral},
       {"max-deviation",
        "W",
        "distance between result and input in world units",

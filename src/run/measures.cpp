@@ -32,9 +32,8 @@ std::string flaw_of(const RunRecord& record) {
 }  // namespace
 
 std::optional<RegionChanges> region_changes_of(const RunRecord& record) {
-  if (!record.regions || record.input.walls.empty()) return std::nullopt;
-  const InputFacts& input = record.input;
-  return find_region_changes(input.walls, input.absorbed_walls, input.region_names, *record.regions);
+  if (!record.regions || record.input.regions.walls.empty()) return std::nullopt;
+  return find_region_changes(record.input.regions, *record.regions);
 }
 
 std::vector<WorldPoint> put_as_in_file(TriangleMesh& mesh, RunRecord& record) {
@@ -75,8 +74,10 @@ std::vector<std::string> check_triangles(const TriangleMesh& mesh, RunRecord& re
   if (joins_vertices(record)) record.topology = check_mesh(with_joined_vertices(mesh));
   if (!flaw.empty() && record.report.dual.failed_cells == 0)
     warnings.push_back(flaw + ", which should not be: please report the input");
-  if (const std::optional<RegionChanges> changes = region_changes_of(record); changes && changes->any())
-    warnings.push_back(words_of(*changes));
+  if (const std::optional<RegionChanges> changes = region_changes_of(record)) {
+    if (changes->any()) warnings.push_back(words_of(*changes));
+    if (const std::string text = words_of(changes->volumes); !text.empty()) warnings.push_back(text);
+  }
   return warnings;
 }
 

@@ -51,12 +51,14 @@ Json topology_json(const MeshInfo& info) {
           {"self_intersecting_triangles", census.intersecting_triangles}};
 }
 
-Json quality_json(const TriangleShapes& s) {
+Json quality_json(const TriangleShapes& s, const LeastDihedral& dihedral) {
   return {{"q_min", s.q_min},
           {"q_mean", s.q_mean},
           {"angle_min_deg", s.angle_min_deg},
           {"angle_max_deg", s.angle_max_deg},
           {"smallest_angle_mean_deg", s.smallest_angle_mean_deg},
+          {"dihedral_min_deg", dihedral.degrees},
+          {"dihedral_min_at", {dihedral.middle.x, dihedral.middle.y, dihedral.middle.z}},
           {"below_1_deg", s.below_1},
           {"below_10_deg_pct", s.below_10_pct},
           {"below_20_deg_pct", s.below_20_pct},
@@ -122,7 +124,7 @@ std::string mesh_info_json(const MeshInfo& info) {
   j["diagonal"] = info.census.diagonal_world;
   j["topology"] = topology_json(info);
   j["regions"] = regions_json(info.regions);
-  j["quality"] = quality_json(info.census.shapes);
+  j["quality"] = quality_json(info.census.shapes, info.census.dihedral);
   j["edges"] = edges_json(info.census.edges);
   j["valence"] = valence_json(info.census.valence);
   j["distance"] = distance_json(info.distance);

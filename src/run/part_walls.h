@@ -23,8 +23,7 @@ inline TriangleSoup walls_of_parts(const Input& input, const RemeshOptions& opti
   PartRegions found = find_part_regions(input.soup, part_options(options, input.soup), context);
   if (tell)
     for (const std::string& text : found.warnings) tell(MessageKind::warning, name + ": " + text);
-  facts.walls = find_region_walls(found.walls);
-  facts.region_names = found.walls.regions.names;
+  facts.regions = regions_of_surface(found.walls);
   return std::move(found.walls);
 }
 

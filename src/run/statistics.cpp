@@ -179,6 +179,8 @@ Json quality_json(const RunRecord& r) {
           {"theta_min_deg", q.theta_min_deg},
           {"theta_avg_deg", q.theta_avg_deg},
           {"theta_max_deg", q.theta_max_deg},
+          {"dihedral_min_deg", q.dihedral.degrees},
+          {"dihedral_min_at", point(q.dihedral.middle)},
           {"below_30_deg", q.below_30_deg},
           {"below_30_deg_pct", q.below_30_deg_pct},
           {"poor_angles", poor},
@@ -293,6 +295,19 @@ Json pairs_json(const std::vector<std::array<RegionName, 2>>& pairs) {
   return list;
 }
 
+Json volumes_json(const std::vector<RegionVolumes>& volumes) {
+  Json list = Json::array();
+  for (const RegionVolumes& of : volumes) {
+    if (!of.has_changed()) continue;
+    Json j = region_json(of.region);
+    j["volume_before"] = of.before_world;
+    j["volume"] = of.after_world;
+    j["change_pct"] = of.change_pct();
+    list.push_back(j);
+  }
+  return list;
+}
+
 /// The census, and what of the input's regions it has not; null of a result without regions.
 Json regions_of_run_json(const RunRecord& r) {
   Json j = regions_json(r.regions);
@@ -304,6 +319,7 @@ Json regions_of_run_json(const RunRecord& r) {
   j["walls_lost"] = pairs_json(changes->lost_walls);
   j["walls_new"] = pairs_json(changes->new_walls);
   j["walls_absorbed"] = pairs_json(changes->absorbed_walls);
+  j["volumes_changed"] = volumes_json(changes->volumes);
   return j;
 }
 

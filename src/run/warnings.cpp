@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <iomanip>
+#include <iterator>
 #include <sstream>
 
 #include "isoshell/readable.h"
@@ -10,10 +13,16 @@
 namespace isoshell {
 namespace {
 
-constexpr size_t kMostNamed = 10;  ///< regions of a sentence
+constexpr size_t kMostNamed = 10;     ///< regions of a sentence
+constexpr double kLeastDihedral = 5;  ///< degrees between walls; generators of tetrahedra refuse less
 
 std::string shown(const RegionName& region) {
   return std::to_string(region.label) + (region.name.empty() ? "" : " (" + region.name + ")");
+}
+std::string shown(const RegionVolumes& volumes) {
+  std::ostringstream text;
+  text << shown(volumes.region) << " by " << std::showpos << std::setprecision(2) << volumes.change_pct() << " %";
+  return text.str();
 }
 std::string shown(const std::array<RegionName, 2>& pair) { return shown(pair[0]) + " and " + shown(pair[1]); }
 
@@ -111,9 +120,24 @@ std::string words_of(const RegionChanges& changes) {
   return text;
 }
 
-std::vector<std::string> warnings_of_quality(const RunRecord& record) {
+std::string words_of(const std::vector<RegionVolumes>& volumes) {
+  std::vector<RegionVolumes> changed;
+  std::copy_if(volumes.begin(), volumes.end(), std::back_inserter(changed), [](auto& v) { return v.has_changed(); });
+  std::stable_sort(changed.begin(), changed.end(), [](const RegionVolumes& a, const RegionVolumes& b) {
+    return std::abs(a.change_pct()) > std::abs(b.change_pct());
+  });
+  std::string text;
+  list(
+      "regions have other volumes than the input's, as their walls are narrower than edges are long; more --vertices, "
+      "or a shorter --region-edge-length for them, keep them:",
+      changed, text);
+  return text;
+}
+
+namespace {
+
+std::string words_of_angles(const RunRecord& record) {
   const MeshQuality& quality = *record.quality;
-  if (quality.below_30_deg == 0) return {};
   std::ostringstream text;
   text << counted(quality.below_30_deg, "triangle has an angle", "triangles have angles") << " below 30 degrees:";
   const char* before = " ";
@@ -124,7 +148,23 @@ std::vector<std::string> warnings_of_quality(const RunRecord& record) {
   text << "; edges of the input may meet at less there, or run nearer to one another than edges are long: more "
           "--vertices make better triangles"
        << ways_to_fewer_curves(record);
-  return {text.str()};
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of_quality(const RunRecord& record) {
+  std::vector<std::string> warnings;
+  if (record.quality->below_30_deg > 0) warnings.push_back(words_of_angles(record));
+  if (const LeastDihedral& least = record.quality->dihedral; record.regions && least.degrees < kLeastDihedral) {
+    std::ostringstream text;
+    text << "walls of regions meet at " << least.degrees << " degrees near "
+         << readable_place(least.middle, record.report.grid.frame) << ", which programs that fill regions may refuse; "
+         << (record.options.regions.empty() ? "another number of --vertices may open them"
+                                            : "--snap W makes one what is nearer than W");
+    warnings.push_back(text.str());
+  }
+  return warnings;
 }
 
 std::vector<std::string> warnings_of_files(const std::vector<WrittenFile>& files, const WorldPoint& offset) {

@@ -16,8 +16,12 @@ std::vector<std::string> warnings_of_repair(const RemeshReport& report, const st
 /// What a run changed of regions and their walls, by label and name, without a full stop; empty where nothing.
 std::string words_of(const RegionChanges& changes);
 
-/// About the mesh itself: one sentence that names its worst angles and the options that make better ones, none when all
-/// are 30 degrees or more.
+/// Which regions have another volume than the surface gives them, by more than can be overlooked; without a full stop,
+/// empty where none has.
+std::string words_of(const std::vector<RegionVolumes>& volumes);
+
+/// About the mesh itself, with the options that make a better one: its worst angles, where any is below 30 degrees, and
+/// of regions walls that meet at less than 5.
 std::vector<std::string> warnings_of_quality(const RunRecord& record);
 
 /// That its numbers do not hold the triangles, without a full stop.

@@ -169,3 +169,18 @@ TEST_CASE("parts: where cuts do not end with all that is near made one, less is,
   CHECK(contains(found.warnings[0], "what is nearer than 0.0225 was made one, and not what is nearer than 0.03"));
   CHECK(contains(found.warnings[0], "give another --snap"));
 }
+
+TEST_CASE("parts: those that nearly touch are named with their gap, and those that share a wall or stay apart are not",
+          "[regions][unit]") {
+  CpuContext context;
+  const TriangleSoup plate = shapes::box({0, 0, 0}, {4, 4, 1});
+  const auto warnings_of = [&](const TriangleSoup& pin) {
+    return find_part_regions(together_as_groups({plate, pin}), {"groups", 0, 0, .125}, context).warnings;
+  };
+  const std::vector<std::string> near = warnings_of(shapes::box({1, 1, 1.0625}, {2, 2, 2}));
+  REQUIRE(near.size() == 1);
+  CHECK(contains(near[0], "regions 1 (part 0) and 2 (part 1) are 0.0625 apart near "));
+  CHECK(contains(near[0], "--snap"));
+  CHECK(warnings_of(shapes::box({1, 1, 1.25}, {2, 2, 2})).empty());
+  CHECK(warnings_of(shapes::box({1, 1, 1}, {2, 2, 2})).empty());
+}

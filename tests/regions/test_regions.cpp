@@ -255,3 +255,77 @@ TEST_CASE("the shell method refuses regions") {
   const TriangleSoup soup = surface_of_labels(voronoi_grains(8, 3), "labels", 0);
   CHECK(contains(message_of(ErrorCode::usage, [&] { remesh(soup, options, context); }), "--method shell"));
 }
+
+TEST_CASE("walls of balls that touch one another in part are opened to angles that can be filled") {
+  TestContext context;
+  const LabelVolume volume = label_volume(40, 24, 24, [](int x, int y, int z) {
+    const auto is_in = [&](double at, double radius) {
+      const double dx = x - at, dy = y - 12, dz = z - 12;
+      return dx * dx + dy * dy + dz * dz < radius * radius;
+    };
+    return is_in(11, 9) ? 1 : is_in(27, 9.5) ? 2 : is_in(19, 5) ? 3 : 0;
+  });
+  for (const int64_t vertices : {600, 2000, 6000}) {
+    INFO(vertices << " vertices");
+    const TriangleMesh mesh = meshed(volume, vertices, context).mesh;
+    CHECK(find_least_dihedral(mesh).degrees >= 10);
+    CHECK(take_census(mesh, context).intersecting_pairs == 0);
+  }
+}
+
+TEST_CASE("regions smaller than an edge keep their volume as far as their few triangles can have it") {
+  TestContext context;
+  const LabelVolume volume = label_volume(48, 48, 48, [](int x, int y, int z) {
+    const int lesion = 1 + (x / 12) % 4 + 4 * ((y / 12) % 4);
+    const double dx = x % 12 - 5.5, dy = y % 12 - 5.5, dz = z - 24;
+    return dx * dx + dy * dy + dz * dz < 5 ? 1 + lesion : 1;
+  });
+  const TriangleMesh mesh = meshed(volume, 1600, context).mesh;
+  for (const auto& [label, world] : volumes_of_regions(mesh.vertices, mesh.triangles, mesh.regions)) {
+    const auto voxels = double(std::count(volume.labels.begin(), volume.labels.end(), label));
+    INFO("region " << label << " of " << voxels << " voxels");
+    CHECK(std::abs(world / voxels - 1) < 0.02);
+  }
+}
+
+TEST_CASE("labels that are not smoothed keep the faces of their voxels flat, with creases where they turn") {
+  TestContext context;
+  LabelVolume volume = label_volume(20, 16, 12, [](int x, int y, int z) {  // steps, and two cubes that touch in an edge
+    if (x < 6 && y < 6 && z < 6) return 3;
+    if (x >= 6 && x < 10 && y >= 6 && y < 10 && z < 6) return 3;
+    return x < 8 + z / 4 * 3 && y > 11 ? 1 : x > 14 ? 2 : 0;
+  });
+  volume.smoothing_vox = 0;
+  const TriangleMesh mesh = meshed(volume, 3000, context).mesh;
+  for (const auto& [label, world] : volumes_of_regions(mesh.vertices, mesh.triangles, mesh.regions))
+    CHECK(std::abs(world - double(std::count(volume.labels.begin(), volume.labels.end(), label))) < 1e-6);
+  for (const auto& t : mesh.triangles) {
+    const WorldPoint n = normalised(doubled_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+    CHECK(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}) > 1 - 1e-9);
+  }
+  CHECK(take_census(mesh, context).intersecting_pairs == 0);
+}
+
+TEST_CASE("the more labels are smoothed the less their walls bend, and regions keep their volumes") {
+  TestContext context;
+  LabelVolume volume = label_volume(  // of which the one wall is as a chessboard
+      24, 32, 32, [](int x, int y, int z) { return x < 11 + (y / 4 + z / 4) % 2 * 2 ? 1 : 2; });
+  const auto voxels = double(std::count(volume.labels.begin(), volume.labels.end(), 1));
+  double roughness = 1.1;
+  for (const double smoothing : {0.2, 0.5, 1.0}) {
+    INFO("smoothing " << smoothing);
+    volume.smoothing_vox = smoothing;
+    const TriangleSoup walls = surface_of_labels(volume, "labels", 0);
+    double sum_sq = 0, count = 0;  // of ways from the middle of the rough wall
+    for (const WorldPoint& p : walls.vertices) {
+      if (p.x < 2 || p.x > 21 || std::min(p.y, p.z) < 2 || std::max(p.y, p.z) > 29) continue;
+      sum_sq += (p.x - 11.5) * (p.x - 11.5);
+      ++count;
+    }
+    CHECK(std::sqrt(sum_sq / count) < 0.8 * roughness);
+    roughness = std::sqrt(sum_sq / count);
+    CHECK(std::abs(volumes_of_regions(walls.vertices, walls.triangles, walls.regions).at(1) / voxels - 1) < 0.001);
+  }
+  volume.smoothing_vox = 1.5;
+  CHECK(contains(message_of(ErrorCode::usage, [&] { surface_of_labels(volume, "labels", 0); }), "smoothing is 1.5"));
+}

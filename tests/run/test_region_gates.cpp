@@ -126,11 +126,33 @@ TEST_CASE("region gates: regions and walls that a run lost or made are named", "
   REQUIRE(other.size() == 1);
   CHECK(contains(other[0], "touch no more: 1 and 2 (bone); regions touch that do not in the input: 1 and 3 (skin)"));
   RunRecord absorbed = record_of(row, row);
-  absorbed.input.absorbed_walls = {{1, 3}};
+  absorbed.input.regions.absorbed_walls = {{1, 3}};
   CHECK(missed_gates(adjacency, absorbed).empty());
   CHECK(contains(statistics_json(absorbed), "\"walls_absorbed\": [\n      [\n        {\n          \"label\": 1"));
   RunRecord without = record_of(row, row);
-  without.input.walls.clear();
+  without.input.regions.walls.clear();
   CHECK(missed_gates(adjacency, without) == std::vector<std::string>{"adjacency: the input has no regions"});
   CHECK(contains(message_of(ErrorCode::usage, [&] { info_of(two_cubes(), "adjacency"); }), "is for a run"));
+}
+
+TEST_CASE("region gates: a region whose volume differs is told with both volumes", "[gates][regions]") {
+  const LabelledCubes row{{3, 1, 1}, {1, 2, 3}};
+  RunRecord record = record_of(row, row);
+  CHECK(missed_gates(parse_gates("region-volume=0"), record).empty());
+  CHECK(contains(statistics_json(record), "\"volumes_changed\": []"));
+  record.input.regions.volume_world[2] = 2;
+  CHECK(missed_gates(parse_gates("region-volume=50"), record).empty());
+  CHECK(missed_gates(parse_gates("region-volume=49"), record) ==
+        std::vector<std::string>{"region-volume=49: region 2 (bone) has 1 of 2, -50 %"});
+  CHECK(contains(statistics_json(record), "\"change_pct\": -50"));
+  CHECK(contains(missed_gates(parse_gates("region-volume=50"), record_of(row, {{3, 1, 1}, {1, 2, 2}}))[0],
+                 "region 3 (skin) is lost"));
+}
+
+TEST_CASE("gates: the least angle between triangles with a common edge is told with its place", "[gates]") {
+  CHECK(missed_of(two_cubes(), "min-dihedral=89.9").empty());
+  const std::vector<std::string> missed = missed_of(two_cubes(), "min-dihedral=91");
+  REQUIRE(missed.size() == 1);
+  CHECK(contains(missed[0], "two triangles meet at 90 degrees near"));
+  CHECK(contains(mesh_info_json(info_of(two_cubes())), "\"dihedral_min_deg\": 90"));
 }

@@ -45,3 +45,20 @@ TEST_CASE("quality: triangles without area count as worst, and none at all as ze
   CHECK(measure_quality({}).q_avg == 0);
   CHECK_THROWS_AS(measure_quality({{{0, 0, 0}}, {{{0, 0, 1}}}}), Error);
 }
+
+TEST_CASE("quality: the least angle between triangles is that of the narrowest of all pairs at an edge",
+          "[quality][unit]") {
+  const double up = std::tan(7 * 3.141592653589793 / 180);
+  const std::vector<WorldPoint> points{{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}, {1, 1, up}, {1, 0, 1}};
+  const auto least = [&](std::vector<std::array<uint32_t, 3>> triangles) {
+    return find_least_dihedral({points, std::move(triangles)});
+  };
+  CHECK(least({{{0, 1, 2}}}).degrees == 180);               // one triangle has none
+  CHECK(least({{{0, 1, 2}}, {{1, 0, 3}}}).degrees == 180);  // flat
+  CHECK(least({{{0, 1, 2}}, {{1, 0, 5}}}).degrees == Approx(90));
+  CHECK(least({{{0, 1, 2}}, {{0, 1, 2}}}).degrees == 0);  // on one another
+  const LeastDihedral three = least({{{0, 1, 2}}, {{1, 0, 5}}, {{1, 0, 4}}, {{0, 1, 3}}});
+  CHECK(three.degrees == Approx(7));
+  CHECK(three.middle.x == 1);
+  CHECK(three.middle.y == 0);
+}

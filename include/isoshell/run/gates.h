@@ -16,11 +16,12 @@ struct Gates {
   bool closed = false, manifold = false, no_self_intersections = false;
   bool allow_intersections = false;  ///< of a run that asks for nothing else: it misses that without this
   std::optional<int64_t> genus, components, boundary_loops;
-  bool count = false;      ///< vertices are as many as were asked for, to a tenth
-  bool features = false;   ///< no curve was lost
-  bool regions = false;    ///< RegionCensus::is_sound()
-  bool adjacency = false;  ///< no region and no wall between two is lost, and none is new
-  std::optional<double> min_angle_deg, max_deviation_world, normal_deviation_deg;
+  bool count = false;                       ///< vertices are as many as were asked for, to a tenth
+  bool features = false;                    ///< no curve was lost
+  bool regions = false;                     ///< RegionCensus::is_sound()
+  bool adjacency = false;                   ///< no region and no wall between two is lost, and none is new
+  std::optional<double> region_volume_pct;  ///< by which volumes of regions may differ from the input's
+  std::optional<double> min_angle_deg, min_dihedral_deg, max_deviation_world, normal_deviation_deg;
   std::optional<double> kept_edges_pct;  ///< of a frame that follows another; others meet them
   std::optional<int64_t> born;
 

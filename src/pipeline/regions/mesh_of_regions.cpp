@@ -17,6 +17,7 @@
 #include "pipeline/patches/mend_patches.h"
 #include "pipeline/patches/simplify_patches.h"
 #include "pipeline/regions/flat_walls.h"
+#include "pipeline/regions/open_wedges.h"
 #include "pipeline/regions/region_walls.h"
 #include "pipeline/regions/restore_volumes.h"
 
@@ -89,7 +90,10 @@ bool coarsen(const PreparedSurface& p, const PatchOptions& in_patches, MeshedPat
 TriangleMesh mesh_of(const PreparedSurface& p, JoinedPatches& joined, Run& run) {
   const CutSurface& cut = *p.cut;
   if (p.walls->regions.are_of_voxels)
-    run.timed("volumes", [&] { restore_volumes(cut, *p.walls, joined, run.context); });
+    run.timed("volumes", [&] {
+      restore_volumes(cut, *p.walls, joined, run.context);
+      open_wedges(*p.walls, cut, joined, run.context);
+    });
   TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
   mesh.features = std::move(joined.features);
   if (!p.walls->regions.are_of_voxels) put_on_planes(cut, *p.walls, joined.home.view(), mesh, run.context);

@@ -12,9 +12,10 @@
 namespace isoshell {
 namespace {
 
-constexpr double kNearSteps = 2;   ///< of the lattice: what is nearer may meet once both are rounded
-constexpr double kThinSteps = 8;   ///< where rounding turns walls by 5 degrees and more
-constexpr double kMostSnap = .05;  ///< of the longest side: more makes one what nobody takes for near
+constexpr double kNearSteps = 2;       ///< of the lattice: what is nearer may meet once both are rounded
+constexpr double kThinSteps = 8;       ///< where rounding turns walls by 5 degrees and more
+constexpr double kGapOfEdge = 1. / 8;  ///< edges hide it, and may come to pass through it
+constexpr double kMostSnap = .05;      ///< of the longest side: more makes one what nobody takes for near
 
 void check_snap(double snap_world, double longest_world) {
   if (snap_world <= kMostSnap * longest_world) return;
@@ -41,6 +42,7 @@ PartOptions part_options(const RemeshOptions& options, const TriangleSoup& soup)
   const double step_world = finer * plan.first_voxel_size_world() / kOneVoxelQ8;
   out.near_world = std::max(out.near_world, kNearSteps * step_world);
   out.thin_world = std::max(out.thin_world, kThinSteps * step_world);
+  out.gap_world = std::max(out.near_world, kGapOfEdge * plan.target.edge_length_world);
   return out;
 }
 

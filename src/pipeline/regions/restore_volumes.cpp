@@ -19,12 +19,12 @@ namespace isoshell {
 namespace {
 
 constexpr int kMostMends = 3;          ///< vertices that went back leave the others more to do
-constexpr int kMostOffsets = 4;        ///< before each: vertices on curves go less far than their walls
+constexpr int kMostOffsets = 12;       ///< before each: vertices on curves go less far than their walls
 constexpr double kLeastOffset_q8 = 1;  ///< less is lost when positions are rounded
 /// What a triangle whose corners stay counts for, of one with a corner that moves: where such walls bound all that
 /// others can move, pressures are bounded all the same.
 constexpr double kStaying = 0.01;
-constexpr double kFarthestOfEdge = 1. / 8;
+constexpr double kFarthestOfEdge = 1. / 4;
 constexpr double kMostOffset_q8 = 1 << 20;  ///< where walls cannot go far enough, pressures grow without bounds
 constexpr uint8_t kAllAxes = 7;
 constexpr int kMostRounds = 16;  ///< in which vertices go back

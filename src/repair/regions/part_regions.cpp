@@ -15,6 +15,7 @@
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
 #include "repair/regions/labels.h"
+#include "repair/regions/near_regions.h"
 #include "repair/regions/thin_cells.h"
 #include "repair/regions/turn_sheets.h"
 
@@ -73,6 +74,22 @@ void warn_of_open_solids(const Parts& parts, const Chains& chains, std::vector<s
                              "its holes, or let --regions cells find what walls enclose"));
   }
   add_warnings(std::move(found), "parts are not closed", warnings);
+}
+
+/// Parts that come near to one another where people expect them to touch.
+void warn_of_near_regions(const TriangleSoup& walls, double within_world, std::vector<std::string>& warnings,
+                          const Context& context) {
+  const auto shown = [&](int32_t label) {
+    for (const RegionName& region : walls.regions.names)
+      if (region.label == label) return std::to_string(label) + " (" + region.name + ")";
+    return std::to_string(label);
+  };
+  std::vector<std::string> found;
+  for (const NearRegions& near : find_near_regions(walls, within_world, context))
+    found.push_back(sentence("regions ", shown(near.labels[0]), " and ", shown(near.labels[1]), " are ",
+                             near.distance_world, " apart near ", near.at.x, ' ', near.at.y, ' ', near.at.z,
+                             " and share no wall; --snap with a larger length makes it one"));
+  add_warnings(std::move(found), "pairs of regions are nearly as near", warnings);
 }
 
 /// What all faces of which are sheets has walls, so nothing else would say that it has no regions.
@@ -224,6 +241,7 @@ PartRegions part_regions(const TriangleSoup& soup, const PartOptions& options, C
   if (out.walls.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "regions", "the faces lie on one another in pairs, which enclose nothing");
   warn_of_no_region(out.walls, how, out.warnings);
+  warn_of_near_regions(out.walls, options.gap_world, out.warnings, context);
   turn_sheets(out.walls);
   out.walls.faces_in_file = soup.faces_in_file;
   out.walls.dirt = soup.dirt;
