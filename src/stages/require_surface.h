@@ -19,8 +19,8 @@ inline void require_closed(const SurfaceMesh& surface, const char* stage) {
 
 /// Of stages that can do with borders that fixed seeds hold.
 inline void require_closed_or_fixed(const SurfaceMesh& surface, const SeedSet& seeds, const char* stage) {
-  if (seeds.fixed.count == 0) return require_closed(surface, stage);
   require_fixed_seeds(surface, seeds, stage);
+  if (seeds.fixed.count == 0) return require_closed(surface, stage);
   if (surface.is_closed())
     throw Error(ErrorCode::usage, stage,
                 "fixed.count is " + std::to_string(seeds.fixed.count) +

@@ -12,6 +12,7 @@
 #include "isoshell/quality.h"
 #include "isoshell/remesh.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/test_context.h"
 
@@ -317,4 +318,22 @@ TEST_CASE("features: what cannot be cut is remeshed without, closed, and the run
     }
     CHECK(volume > 0);
   }
+}
+
+TEST_CASE("features: a needle that no crease has room on is meshed without them, each time the same", "[features]") {
+  RemeshOptions options = keeping_creases(300);
+  options.closing_vox = 4;
+  std::set<uint64_t> digests;
+  for (const int threads : {1, 1, 2}) {
+    TestContext context;
+    context.threads = threads;
+    const RemeshResult result = remesh(shapes::box({0, 0, 0}, {1, 0.002, 0.002}), options, context);
+    const FeatureReport& features = result.report.features;
+    CHECK(check_mesh(result.mesh).is_closed_manifold());
+    CHECK_FALSE(features.kept);
+    CHECK(contains(features.given_up, "edges are too long"));
+    CHECK(features.lost.size() == 12);
+    digests.insert(digest(result.mesh));
+  }
+  CHECK(digests.size() == 1);
 }

@@ -7,6 +7,7 @@
 #include "isoshell/mesh_topology.h"
 #include "stages/halfedge/triangle_shape.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"
 #include "support/test_context.h"
@@ -140,6 +141,33 @@ TEST_CASE("collapse: nothing is taken where nothing is asked for", "[collapse][s
   collapse_edges(sheet, 1000, m.seeds, m.mesh, context);
   CHECK(m.seeds.size() == count);
   CHECK(std::equal(before.begin(), before.end(), m.mesh.triangles.begin()));
+}
+
+TEST_CASE("collapse: seeds whose homes are no vertices of the surface are refused, by every stage that begins there",
+          "[collapse][stage]") {
+  TestContext context;
+  const Sheet sheet = sheet_of_soup(shapes::torus(2, 0.7, 160, 70), 256, 1, 1);
+  const int64_t vertices = sheet.vertex_count();
+  Meshed m = meshed(sheet, 100, 5, context);
+  on_host(m.seeds).home[7] = uint32_t(vertices);
+  const auto refusal = [&](auto stage) { return message_of(ErrorCode::usage, stage); };
+  const std::string expected = "home[7] is " + std::to_string(vertices) + "; it must be one of the ";
+  CHECK(contains(refusal([&] {
+                   collapse_edges(sheet, {host_copy(m.mesh), host_copy(m.seeds)}, {50}, context);
+                 }),
+                 expected));
+  CHECK(contains(refusal([&] {
+                   optimize_mesh(sheet, {host_copy(m.mesh), host_copy(m.seeds)}, {}, context);
+                 }),
+                 expected));
+  CHECK(contains(refusal([&] { triangulate_dual(sheet, host_copy(m.seeds), {}, context); }), expected));
+  CHECK(contains(refusal([&] { relax_on_sheet(sheet, host_copy(m.seeds), {}, context); }), expected));
+  CHECK(contains(refusal([&] { subdivide_seeds(sheet, m.mesh, m.seeds, 200, context); }), expected));
+  m.seeds.home.shorten(50);
+  CHECK(contains(refusal([&] {
+                   collapse_edges(sheet, {host_copy(m.mesh), host_copy(m.seeds)}, {50}, context);
+                 }),
+                 "home.size() is 50"));
 }
 
 TEST_CASE("collapse: ids below the number left are kept, and others take those set free", "[collapse][stage]") {

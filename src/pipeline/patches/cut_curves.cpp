@@ -124,8 +124,12 @@ struct CutPlan {
   CutOptions how = {};
 };
 
+/// Throws: NoRoom where the network has no curve left: the mesh is made on the sheet then, and homes of seeds that were
+/// relaxed here would be no vertices of that.
 CutAlongCurves make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source, FeatureReport found,
                         Context& context) {
+  if (network.curves.empty())
+    throw NoRoom("features", "edges are too long for that; use more vertices, or a shorter edge length");
   auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, plan.how, context));
   if (cut->seeds == 0) cut->seeds = plan.seeds;
   const SeedSet fixed = seeds_on_curves(*cut, 0);
@@ -138,7 +142,7 @@ CutAlongCurves make_cut(const CutPlan& plan, const CurveNetwork& network, CutSou
 }
 
 /// The same along as many creases as half of the vertices can hold, to within a tenth or as near as some looks come.
-/// Throws: as cut_surface, at the first look.
+/// Throws: as make_cut, at the first look.
 CutAlongCurves cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const CutSource& source,
                                const FeatureReport& all_found, Context& context) {
   const FeatureMesh& mesh = plan.mesh;

@@ -8,6 +8,7 @@ namespace isoshell {
 SeedSet subdivide_seeds(const SurfaceMesh& surface, const DualMesh& mesh, const SeedSet& seeds, int64_t target,
                         Context& context) {
   require_closed(surface, "subdivide");
+  require_homes(surface, seeds, "subdivide");
   const int64_t most = seeds.size() + mesh.triangles.size() / 2 * 5;
   if (target < seeds.size() || target > most)
     throw Error(ErrorCode::usage, "subdivide",
