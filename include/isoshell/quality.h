@@ -20,7 +20,8 @@ struct LeastDihedral {
 };
 
 /// Result: the same for every number of threads; of equal angles that of the first edge. Triangles without area have
-/// none. Cost: O(triangles), and a list of half-edges. Throws: usage when an index is out of range.
+/// none. Cost: O(triangles), and a list of half-edges. Throws: usage when an index is out of range; out_of_memory for
+/// more triangles than half-edges can be numbered of in 32 bits.
 LeastDihedral find_least_dihedral(const TriangleMesh& mesh);
 
 /// Zero for a mesh without triangles.

@@ -86,7 +86,7 @@ struct RegionVolumes {
   RegionName region;
   double before_world = 0, after_world = 0;
 
-  double change_pct() const { return before_world > 0 ? 100 * (after_world / before_world - 1) : 0; }
+  double change_pct() const { return 100 * (after_world / before_world - 1); }
   bool has_changed() const { return std::abs(change_pct()) > kNotablePct; }
 };
 
@@ -97,7 +97,7 @@ struct RegionChanges {
   std::vector<std::array<RegionName, 2>> new_walls;   ///< pairs that shared none before
   /// Pairs of a volume of labels that touched in absorbed islands alone: no loss, as that is asked for.
   std::vector<std::array<RegionName, 2>> absorbed_walls;
-  std::vector<RegionVolumes> volumes;  ///< of closed regions that are there before and after, ascending
+  std::vector<RegionVolumes> volumes;  ///< of regions that the mesh closes and that had a volume before, ascending
 
   bool any() const { return !lost.empty() || !lost_walls.empty() || !new_walls.empty(); }
 };

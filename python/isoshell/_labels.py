@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 import operator
 import os
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     Triple = Tuple[float, float, float]
 
+LEAST_SMOOTHING = 0.05  # voxels that part walls which touch one another in edges
 INT32 = (-(2**31), 2**31 - 1)
 
 
@@ -37,8 +39,9 @@ class Labels:
         background: the label of what is no region.
         smallest_island: islands of fewer voxels, connected through faces, get the label around them, which is warned of;
             the largest one of each region stays. 0: all stay.
-        smoothing: how far, in voxels, walls may leave the faces of their voxels along each axis to be smooth, 0 to 1; at 0
-            they are these faces, flat, and where they turn are creases.
+        smoothing: how far, in voxels, walls may leave the faces of their voxels along each axis to be smooth, 0.05 to 1,
+            and a quarter farther where regions meet in curves; at 0 they are these faces, flat, and where they turn are
+            creases.
     """
 
     def __init__(self, array: Any, spacing: Any = (1, 1, 1), origin: Any = (0, 0, 0), affine: Any = None,
@@ -92,10 +95,10 @@ def lattice_of(labels: Labels) -> _isoshell.LabelLattice:
 
 
 def _smoothing(value: Any) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise Error(f"smoothing is {value!r}; it must be a number from 0 to 1") from None
+    is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
+    if not is_number or not (value == 0 or LEAST_SMOOTHING <= value <= 1):
+        raise Error(f"smoothing is {value!r}; it must be a number from {LEAST_SMOOTHING} to 1, or 0 for the faces of voxels")
+    return float(value)
 
 
 def _of_spacing(spacing: Any, origin: Any) -> tuple[Triple, list[Triple]]:

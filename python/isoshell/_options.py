@@ -123,7 +123,7 @@ class Options(TypedDict, total=False):
     iso: Optional[float]
     background: Optional[int]
     smallest_island: Optional[int]
-    smoothing: Optional[int]
+    smoothing: Optional[float]
     input_format: Optional[str]
     output_format: Optional[str]
     save_shell: Optional[Path]

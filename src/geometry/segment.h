@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "geometry/world_vector.h"
@@ -15,6 +16,16 @@ inline double nearest_part(const WorldPoint& p, const WorldPoint& a, const World
 }
 inline WorldPoint nearest_on_segment(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
   return a + nearest_part(p, a, b) * (b - a);
+}
+/// The nearest points of two segments, on each one; of parallel ones some.
+inline std::array<WorldPoint, 2> nearest_of_segments(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c,
+                                                     const WorldPoint& d) {
+  const WorldPoint u = b - a, v = d - c, w = a - c;
+  const double uu = length_sq(u), uv = dot(u, v), vv = length_sq(v), area_sq = uu * vv - uv * uv;
+  const double along = area_sq > 0 ? std::clamp((uv * dot(v, w) - vv * dot(u, w)) / area_sq, 0.0, 1.0) : 0;
+  const WorldPoint on_second = nearest_on_segment(a + along * u, c, d);
+  const WorldPoint on_first = nearest_on_segment(on_second, a, b);
+  return {on_first, nearest_on_segment(on_first, c, d)};
 }
 inline double segment_distance_sq(const WorldPoint& p, const WorldPoint& a, const WorldPoint& b) {
   return distance_sq(p, nearest_on_segment(p, a, b));

@@ -128,8 +128,8 @@ class Reader {
     if (points.outliers > 0) warn(counted(points.outliers, "point") + " left out, far from all others");
     if (1 - points.held_part >= kNotableLostPart)
       warn(std::to_string(std::lround(100 * (1 - points.held_part))) +
-           " % of the points are far from the surface that was found, as of thin or scattered things: thin the cloud "
-           "out to one density, give normals, or leave such points out");
+           " % of the points, by area, are far from the surface that was found" +
+           (points.normals_given ? "" : "; normals of their own may tell their sides"));
     if (points.open_part >= kNotableOpenPart)
       warn(std::to_string(std::lround(100 * points.open_part)) + " % of the surface has no points near it and " +
            (keep_open ? "was left out" : "was closed smoothly; --boundary keep leaves it open"));

@@ -126,12 +126,16 @@ SurfaceRegions regions_of_surface(const TriangleSoup& surface) {
   if (surface.regions.empty()) return regions;
   const WorldBox box = box_of(surface.vertices, surface.triangles);
   const WorldPoint middle = .5 * (box.min + box.max);
-  for (size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const auto at = [&](uint32_t v) { return surface.vertices[v] - middle; };
-    const double volume = dot(at(a), cross(at(b), at(c))) / 6;
-    regions.volume_world[surface.regions.labels[t][0]] += volume;
-    regions.volume_world[surface.regions.labels[t][1]] -= volume;
+  for (size_t t = 0; t < surface.triangles.size();) {  // faces with the same labels mostly follow one another
+    const std::array<int32_t, 2> labels = surface.regions.labels[t];
+    double six_volumes = 0;
+    for (; t < surface.triangles.size() && surface.regions.labels[t] == labels; ++t) {
+      const auto& [a, b, c] = surface.triangles[t];
+      const auto at = [&](uint32_t v) { return surface.vertices[v] - middle; };
+      six_volumes += dot(at(a), cross(at(b), at(c)));
+    }
+    regions.volume_world[labels[0]] += six_volumes / 6;
+    regions.volume_world[labels[1]] -= six_volumes / 6;
   }
   regions.volume_world.erase(surface.regions.background);
   regions.walls = count_walls(surface);

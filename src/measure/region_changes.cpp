@@ -61,7 +61,8 @@ RegionChanges find_region_changes(const SurfaceRegions& before, const RegionCens
   changes.new_walls = named.difference(now, then);
   changes.absorbed_walls = named.difference({before.absorbed_walls.begin(), before.absorbed_walls.end()}, {});
   for (const RegionCounts& region : after.regions)
-    if (const auto was = before.volume_world.find(region.label); region.closed && was != before.volume_world.end())
+    if (const auto was = before.volume_world.find(region.label);
+        region.closed && was != before.volume_world.end() && was->second > 0)
       changes.volumes.push_back({named(region.label), was->second, region.volume_world});
   return changes;
 }

@@ -79,6 +79,7 @@ std::string miss_adjacency(const Gates&, const Measured& m) {
 
 std::string miss_region_volume(const Gates& g, const Measured& m) {
   if (!m.region_changes) return "the input has no regions";
+  if (const std::string open = open_region(*m.regions); !open.empty()) return open;
   const std::vector<RegionVolumes>& volumes = m.region_changes->volumes;
   const auto worst = std::max_element(volumes.begin(), volumes.end(), [](const auto& a, const auto& b) {
     return std::abs(a.change_pct()) < std::abs(b.change_pct());

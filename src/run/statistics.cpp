@@ -1,5 +1,6 @@
 // Everything measured in a run, as JSON.
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "isoshell/options/options_json.h"
@@ -319,6 +320,11 @@ Json regions_of_run_json(const RunRecord& r) {
   j["walls_lost"] = pairs_json(changes->lost_walls);
   j["walls_new"] = pairs_json(changes->new_walls);
   j["walls_absorbed"] = pairs_json(changes->absorbed_walls);
+  std::map<int32_t, double> before;
+  for (const RegionVolumes& of : changes->volumes) before[of.region.label] = of.before_world;
+  for (Json& region : j["regions"])
+    if (const auto was = before.find(region["label"].get<int32_t>()); was != before.end())
+      region["volume_before"] = was->second;
   j["volumes_changed"] = volumes_json(changes->volumes);
   return j;
 }

@@ -21,7 +21,8 @@ std::string shown(const RegionName& region) {
 }
 std::string shown(const RegionVolumes& volumes) {
   std::ostringstream text;
-  text << shown(volumes.region) << " by " << std::showpos << std::setprecision(2) << volumes.change_pct() << " %";
+  text << shown(volumes.region) << " by " << std::showpos << std::fixed << std::setprecision(1) << volumes.change_pct()
+       << " %";
   return text.str();
 }
 std::string shown(const std::array<RegionName, 2>& pair) { return shown(pair[0]) + " and " + shown(pair[1]); }
@@ -127,11 +128,11 @@ std::string words_of(const std::vector<RegionVolumes>& volumes) {
     return std::abs(a.change_pct()) > std::abs(b.change_pct());
   });
   std::string text;
-  list(
-      "regions have other volumes than the input's, as their walls are narrower than edges are long; more --vertices, "
-      "or a shorter --region-edge-length for them, keep them:",
-      changed, text);
-  return text;
+  list("regions have other volumes than in the input:", changed, text);
+  if (changed.empty()) return text;
+  return text +
+         "; more --vertices, or a shorter --region-edge-length for them, keep volumes of regions that are "
+         "narrower than edges are long";
 }
 
 namespace {
@@ -160,8 +161,8 @@ std::vector<std::string> warnings_of_quality(const RunRecord& record) {
     std::ostringstream text;
     text << "walls of regions meet at " << least.degrees << " degrees near "
          << readable_place(least.middle, record.report.grid.frame) << ", which programs that fill regions may refuse; "
-         << (record.options.regions.empty() ? "another number of --vertices may open them"
-                                            : "--snap W makes one what is nearer than W");
+         << (record.input.kind == InputKind::labels ? "another number of --vertices may open them"
+                                                    : "those of the input may meet so there");
     warnings.push_back(text.str());
   }
   return warnings;

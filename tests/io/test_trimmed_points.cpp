@@ -118,3 +118,25 @@ TEST_CASE("points of flat ground with trees over it become the ground, though a 
     CHECK(info.held_part > .8);
   }
 }
+
+TEST_CASE("points of a body that is a few of their spacings thick are on both of its sides, and no scan of one",
+          "[points][unit]") {
+  for (const int thick : {5, 8, 10, 12}) {
+    INFO(thick << " spacings");
+    PointCloud cloud;
+    const auto add = [&](double x, double y, double z) { cloud.position.push_back({x, y, z}); };
+    for (int i = 0; i < 30; ++i) {
+      for (int j = 0; j < 20; ++j) add(i + .5, j + .5, 0), add(i + .5, j + .5, thick);
+      for (int k = 0; k < thick; ++k) add(i + .5, 0, k + .5), add(i + .5, 20, k + .5);
+    }
+    for (int j = 0; j < 20; ++j)
+      for (int k = 0; k < thick; ++k) add(0, j + .5, k + .5), add(30, j + .5, k + .5);
+    for (const VolumeCreases creases : {VolumeCreases::none, VolumeCreases::all}) {
+      PointSurfaceInfo info;
+      const double area = area_of(surface_of_points(cloud, 0, info, creases)), truth = 1200 + 100 * thick;
+      CHECK(area > .9 * truth);
+      CHECK(area < 1.03 * truth);
+      CHECK(info.open_part < .02);
+    }
+  }
+}

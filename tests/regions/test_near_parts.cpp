@@ -184,3 +184,18 @@ TEST_CASE("parts: those that nearly touch are named with their gap, and those th
   CHECK(warnings_of(shapes::box({1, 1, 1.25}, {2, 2, 2})).empty());
   CHECK(warnings_of(shapes::box({1, 1, 1}, {2, 2, 2})).empty());
 }
+
+TEST_CASE("parts: crossed bars are near where only their edges are, and parts of a thin layer between them are not",
+          "[regions][unit]") {
+  CpuContext context;
+  const auto warnings_of = [&](const std::vector<TriangleSoup>& parts) {
+    return find_part_regions(together_as_groups(parts), {"groups", 0, 0, .125}, context).warnings;
+  };
+  const TriangleSoup bar = shapes::box({-8, 0, 0}, {8, .5, .5}), across = shapes::box({0, -8, .5625}, {.5, 8, 1});
+  const std::vector<std::string> near = warnings_of({bar, across});
+  REQUIRE(near.size() == 1);
+  CHECK(contains(near[0], "are 0.0625 apart"));
+  CHECK(warnings_of({shapes::box({0, 0, 0}, {4, 4, 1}), shapes::box({0, 0, 1}, {4, 4, 1.0625}),
+                     shapes::box({0, 0, 1.0625}, {4, 4, 2})})
+            .empty());
+}

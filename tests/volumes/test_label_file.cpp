@@ -249,6 +249,9 @@ TEST_CASE("labels: an input says how labels are read, and what is no volume of l
   CHECK(says(error_of([&] { read_input(request, 0); }), "--background is for volumes of labels"));
   request.labels.background.reset();
   CHECK(says(error_of([&] { read_input(request, 0); }), "--smallest-island is for volumes of labels"));
+  request.labels.smallest_island_vox.reset();
+  request.labels.smoothing_vox = 0;
+  CHECK(says(error_of([&] { read_input(request, 0); }), "--smoothing is for volumes of labels"));
 }
 
 TEST_CASE("labels: transforms that are frustums are refused", "[labels][unit]") {

@@ -118,7 +118,7 @@ std::vector<CommandOption> file_options() {
       {{group, "smoothing", "VOX",
         "of a volume of labels: how far, in voxels, walls may leave the faces of their voxels to be smooth; at 0 they "
         "are these faces, flat, with creases where they turn",
-        "0.5", false, false, kSmoothing},
+        "0.5", true, false, kSmoothing},
        set_smoothing},
       {{group, "input-format", "F", "format of INPUT: " + listed_formats(reads_anything), "by its name"},
        [](const std::string& text, Arguments& a) { a.run.input.format = text; }},

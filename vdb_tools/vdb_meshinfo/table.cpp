@@ -130,6 +130,7 @@ void add_quality(const MeshCensus& census, Table& table) {
   table.number("smallest angle", s.angle_min_deg, " deg");
   table.number("mean of smallest angles", s.smallest_angle_mean_deg, " deg");
   table.number("largest angle", s.angle_max_deg, " deg");
+  table.number("smallest dihedral angle", census.dihedral.degrees, " deg");
   table.number("smallest angle below 30 deg", s.below_30_pct, " %");
   table.number("obtuse", s.above_90_pct, " %");
   table.number("edge length, mean", census.edges.mean);

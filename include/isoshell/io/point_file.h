@@ -41,7 +41,7 @@ struct PointSurfaceInfo {
   bool normals_given = false, normals_turned = false;
   bool normals_ignored = false;  ///< they do not stand on the planes of their neighbours; others were estimated
   bool sharp = false;            ///< points lie on sharp sides, whose creases the surface has
-  double held_part = 1;          ///< of the points, by area, those that the surface goes through
+  double held_part = 1;          ///< of the points, by area, those that are near to the surface
   double open_part = 0;          ///< of the surface's vertices, those that bridge where there are no points
 };
 

@@ -232,6 +232,8 @@ def test_options_of_an_image_of_labels_are_whole_numbers(option):
         assert caught.value.code == isoshell.ErrorCode.USAGE
     for value in (0.0, "0", np.int64(0)):
         assert isoshell.remesh(image, vertices=100, **{option: value}).report["topology"]["closed"]
+    smooth = isoshell.remesh(image, vertices=100, smoothing=1)
+    assert smooth.digest == isoshell.remesh(isoshell.Labels(labels, affine=np.eye(4), smoothing=1), vertices=100).digest
 
 
 def test_an_image_of_values_is_a_volume_turned_as_its_affine_says():

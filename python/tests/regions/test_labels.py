@@ -229,12 +229,24 @@ def test_files_of_labels_are_read_as_labels_say_it(tmp_path):
     speckled[3, 3, 3] = speckled[9:12, 9:12, 9:12] = 2
     path = tmp_path / "speckled.vdb"
     Labels(speckled).save(path)
-    for how in ({"smallest_island": 0}, {"background": 1, "smallest_island": 0}):
+    for how in ({"smallest_island": 0}, {"background": 1, "smallest_island": 0}, {"smoothing": 0.25}):
         assert isoshell.remesh(path, **how, **QUICK).digest == isoshell.remesh(Labels(speckled, **how), **QUICK).digest
     with pytest.raises(isoshell.Error, match="give them to isoshell.Labels"):
         isoshell.remesh(Labels(speckled), background=1, **QUICK)
     with pytest.raises(isoshell.Error, match="smallest_island is for volumes of labels"):
         isoshell.remesh(([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), smallest_island=1, **QUICK)
+
+
+def test_labels_that_are_not_smoothed_are_the_faces_of_their_voxels(tmp_path):
+    steps = np.zeros((12, 12, 12), np.int32)
+    steps[2:6, 2:10, 2:10] = 1
+    steps[6:10, 2:6, 2:10] = 2
+    made = isoshell.remesh(Labels(steps, smoothing=0), vertices=600)
+    volumes = {region["label"]: region["volume"] for region in made.report["regions"]["regions"]}
+    assert volumes[1] == pytest.approx(256) and volumes[2] == pytest.approx(128)
+    for smoothing in (-1, 0.01, 1.5, "0.5", True, None, float("nan")):
+        with pytest.raises(isoshell.Error, match="smoothing is"):
+            Labels(steps, smoothing=smoothing).save(tmp_path / "refused.vdb")
 
 
 def test_walls_between_regions_are_those_of_the_voxels(polycrystal):

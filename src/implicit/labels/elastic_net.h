@@ -22,8 +22,8 @@ using FinePoint = int32_t __attribute__((vector_size(16)));
 /// along each axis (see box_of). Sums are of integers, and every product is rounded alone: no order shows.
 class ElasticNet {
  public:
-  /// Every vertex is at rest, and goes no farther than that along an axis, a quarter more on curves. The walls must
-  /// outlive it.
+  /// Every vertex is at rest. None goes farther than `farthest_vox` along an axis, or a quarter more on curves. The
+  /// walls must outlive it.
   ElasticNet(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, double farthest_vox);
 
   /// Every vertex goes this share of the way to the mean of its neighbours, one of curves that of those along curves.

@@ -17,8 +17,8 @@ namespace {
 constexpr double kFirstShare = 0.25;  ///< of the way: the first step parts walls, which do not cross then
 constexpr int kSoftSteps = 28, kStiffSteps = 38;
 constexpr double kSoft = 0.02, kStiff = 1;  ///< curves first go where walls lead them, and then get straight
-constexpr int kMostOffsets = 5;             ///< thin regions need them, as vertices go no farther than half a voxel
-constexpr double kLeastOffset_q8 = 0.5;     ///< less is lost when positions are rounded
+constexpr int kMostOffsets = 5;          ///< thin regions need them, as vertices go no farther than a part of a voxel
+constexpr double kLeastOffset_q8 = 0.5;  ///< less is lost when positions are rounded
 constexpr int kHalvings = 4;
 constexpr int kMostRounds = 24;
 constexpr size_t kFacesOfTask = 8192;

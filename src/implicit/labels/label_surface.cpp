@@ -39,9 +39,11 @@ void check_volume(const LabelVolume& volume, const std::string& name) {
   if (voxels != int64_t(volume.labels.size()))
     refuse_use(name + ": there are " + std::to_string(volume.labels.size()) + " labels for " + std::to_string(voxels) +
                " voxels; give one a voxel");
-  if (!(volume.smoothing_vox >= 0 && volume.smoothing_vox <= 1)) {
+  const double smoothing = volume.smoothing_vox;
+  if (smoothing != 0 && !(smoothing >= LabelVolume::kLeastSmoothing && smoothing <= 1)) {
     std::ostringstream text;
-    text << name << ": smoothing is " << volume.smoothing_vox << " voxels; it must be 0 to 1";
+    text << name << ": smoothing is " << smoothing << " voxels; it must be " << LabelVolume::kLeastSmoothing
+         << " to 1, or 0 for the faces of voxels";
     refuse_use(text.str());
   }
   const double spanned = spanned_world(volume);

@@ -18,7 +18,7 @@ constexpr size_t kSpacingNeighbour = 6;  // of random points on a plane the sixt
 constexpr double kSpacingFactor = 0.7071067811865476;
 constexpr double kAreaFactor = 0.5235987755982988;  // pi / 6: a disk of that radius holds six
 constexpr double kLayerCell = 2;                    // spacings: side of a cell that is seen along a direction
-constexpr double kLayerGap = 10;                    // spacings between two layers, more than a slope makes in a cell
+constexpr double kLayerGap = 4;       // spacings without points between two layers; those of a slope follow one another
 constexpr double kMostLayered = 0.1;  // of the cells of a scan from one side, at its steps; of a closed surface, most
 constexpr size_t kTried = 20000;      // given normals, at most, that are held against planes of neighbours
 // Mean cosine with those: .5 for any directions, .65 where noise is two spacings, else .8 and more.
@@ -104,7 +104,7 @@ class Orientation {
     return true;
   }
 
-  /// Of the cells that the points fill as seen along a direction, the part with points far behind one another.
+  /// Of the cells that the points fill as seen along a direction, the part with points behind a gap behind others.
   double layered_part(const WorldPoint& along) const {
     const WorldPoint other = std::abs(along.x) < 0.7 ? WorldPoint{1, 0, 0} : WorldPoint{0, 1, 0};
     const WorldPoint u = normalised(cross(along, other)), v = cross(along, u);
@@ -121,7 +121,9 @@ class Orientation {
     int64_t cells = 0, layered = 0;
     for (size_t i = 0, end; i < seen.size(); i = end, ++cells) {
       for (end = i; end < seen.size() && seen[end].u == seen[i].u && seen[end].v == seen[i].v;) ++end;
-      layered += seen[end - 1].height - seen[i].height > kLayerGap * p_.spacing;
+      double gap = 0;
+      for (size_t j = i + 1; j < end; ++j) gap = std::max(gap, seen[j].height - seen[j - 1].height);
+      layered += gap > kLayerGap * p_.spacing;
     }
     return double(layered) / double(cells);
   }

@@ -163,7 +163,6 @@ class Components {
     }
     const std::vector<uint32_t> supported = supported_vertices(of, soup);
     for (size_t i = 0; i < supported.size(); ++i) {
-      area_of_points_ += of.points.area[i];
       if (supported[i] == kNone) continue;
       Component& c = at(supported[i]);
       c.supported_area += of.points.area[i];
@@ -173,13 +172,6 @@ class Components {
     }
   }
 
-  /// Of all points, by area, those of components that stay.
-  double kept_part() {
-    double kept = 0;
-    for (uint32_t v = 0; v < component_.size(); ++v)
-      if (sets_.root(v) == v && keeps(v)) kept += component_[v].supported_area;
-    return area_of_points_ > 0 ? kept / area_of_points_ : 0;
-  }
   bool keeps(uint32_t vertex) {
     const Component& c = at(vertex);
     if (!may_stay(c)) return false;
@@ -195,20 +187,36 @@ class Components {
   const bool hollows_are_known_;
   IndexSets sets_;
   std::vector<Component> component_;  ///< per vertex, at the roots
-  double area_of_points_ = 0, supported_area_ = 0, most_ = 0;
+  double supported_area_ = 0, most_ = 0;
 };
 
 }  // namespace
 
-double drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup) {
-  if (soup.triangles.empty()) return 0;
+void drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup) {
+  if (soup.triangles.empty()) return;
   Components components(of, soup);
-  const double kept = components.kept_part();
   soup.triangles.erase(std::remove_if(soup.triangles.begin(), soup.triangles.end(),
                                       [&](const auto& t) { return !components.keeps(t[0]); }),
                        soup.triangles.end());
   drop_unused_vertices(soup);
-  return kept;
+}
+
+double held_part(const PointsOfSurface& of, const TriangleSoup& soup) {
+  if (soup.vertices.empty()) return 0;
+  const PointTree vertices(soup.vertices);
+  const double reach = kSupportVoxels * of.voxel_size;
+  std::vector<uint8_t> is_held(of.points.position.size());
+  for_each_index(size_t(0), is_held.size(), [&](size_t i) {
+    std::vector<PointTree::Near> near;
+    vertices.nearest(of.points.position[i], 1, near);
+    is_held[i] = near[0].first < reach * reach;
+  });
+  double held = 0, all = 0;
+  for (size_t i = 0; i < is_held.size(); ++i) {
+    all += of.points.area[i];
+    if (is_held[i]) held += of.points.area[i];
+  }
+  return all > 0 ? held / all : 0;
 }
 
 std::vector<uint8_t> find_supported(const PointsOfSurface& of, const TriangleSoup& soup) {

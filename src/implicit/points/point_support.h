@@ -18,9 +18,11 @@ struct PointsOfSurface {
 
 /// Leaves out components that hardly any point supports, and numbers the vertices that stay anew. Every point supports
 /// the nearest vertex of the surface that looks its way. Hollows stay only where the file's own normals face them:
-/// normals that were turned here all look away from what they enclose, and where they do not they are wrong. Result:
-/// the part of the points, by area, that support what stays.
-double drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup);
+/// normals that were turned here all look away from what they enclose, and where they do not they are wrong.
+void drop_unsupported(const PointsOfSurface& of, TriangleSoup& soup);
+
+/// The part of the points, by area, that have vertices near them, whichever way both look.
+double held_part(const PointsOfSurface& of, const TriangleSoup& soup);
 
 /// 1 for vertices that have points near them, 0 for those that bridge.
 std::vector<uint8_t> find_supported(const PointsOfSurface& of, const TriangleSoup& soup);

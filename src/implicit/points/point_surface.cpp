@@ -186,13 +186,15 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   if (info.sharp) {
     const std::vector<WorldPoint> smooth = points.normal;
     soup = extract_sharp(points, std::move(flat), {shape, value, level}, memory_limit_bytes);
-    info.held_part = drop_unsupported(around, soup);
+    drop_unsupported(around, soup);
+    info.held_part = held_part(around, soup);
     info.sharp = info.held_part > kMostlyHeld;
     if (!info.sharp) points.normal = smooth;
   }
   if (!info.sharp) {
     soup = extract_smooth(shape, std::move(value), std::max(level, kLeastLevel), memory_limit_bytes);
-    info.held_part = drop_unsupported(around, soup);
+    drop_unsupported(around, soup);
+    info.held_part = held_part(around, soup);
   }
   if (soup.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "points",

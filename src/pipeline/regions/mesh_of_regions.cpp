@@ -91,8 +91,9 @@ TriangleMesh mesh_of(const PreparedSurface& p, JoinedPatches& joined, Run& run) 
   const CutSurface& cut = *p.cut;
   if (p.walls->regions.are_of_voxels)
     run.timed("volumes", [&] {
-      restore_volumes(cut, *p.walls, joined, run.context);
       open_wedges(*p.walls, cut, joined, run.context);
+      restore_volumes(cut, *p.walls, joined, run.context);
+      open_wedges(*p.walls, cut, joined, run.context);  // what closed again, by little
     });
   TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
   mesh.features = std::move(joined.features);

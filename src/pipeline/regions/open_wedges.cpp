@@ -2,7 +2,9 @@
 #include "pipeline/regions/open_wedges.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 

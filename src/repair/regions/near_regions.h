@@ -10,15 +10,15 @@
 namespace isoshell {
 namespace repair {
 
-/// Two regions, the smaller label first, whose walls nowhere have a vertex in common.
+/// Two regions, the smaller label first, whose walls have no vertex in common, nor both one with the same third region.
 struct NearRegions {
   std::array<int32_t, 2> labels;
-  double distance_world;  ///< the least there is between a vertex or a middle of a face of one and a face of the other
-  WorldPoint at;          ///< of that vertex or middle
+  double distance_world;
+  WorldPoint at;  ///< where one is nearest to the other
 };
 
-/// Those nearer than `within_world`, the nearest first. Result: the same for every number of threads. Cost: a grid of
-/// the faces, and a search from each vertex and face.
+/// Those nearer than `within_world`, the nearest first. Result: the same for every number of threads. Cost: a tree of
+/// the boxes of faces, and the distance of each two that are as near.
 std::vector<NearRegions> find_near_regions(const TriangleSoup& walls, double within_world, const Context& context);
 
 }  // namespace repair

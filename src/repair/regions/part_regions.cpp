@@ -87,8 +87,8 @@ void warn_of_near_regions(const TriangleSoup& walls, double within_world, std::v
   std::vector<std::string> found;
   for (const NearRegions& near : find_near_regions(walls, within_world, context))
     found.push_back(sentence("regions ", shown(near.labels[0]), " and ", shown(near.labels[1]), " are ",
-                             near.distance_world, " apart near ", near.at.x, ' ', near.at.y, ' ', near.at.z,
-                             " and share no wall; --snap with a larger length makes it one"));
+                             near.distance_world, " apart near ", exact_place(near.at),
+                             " and share no wall; --snap W with W above that lets them share one"));
   add_warnings(std::move(found), "pairs of regions are nearly as near", warnings);
 }
 
