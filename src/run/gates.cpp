@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <variant>
 
@@ -180,80 +181,77 @@ std::string miss_born(const Gates& g, const Measured& m) {
 }
 
 /// In the order of their messages.
-const std::vector<GateRow>& rows() {
-  static const std::vector<GateRow> all = {
-      {"closed", "", "", &Gates::closed, {}, GateOf::mesh, miss_closed},
-      {"manifold", "", "", &Gates::manifold, {}, GateOf::mesh, miss_manifold},
-      {"no-self-intersections", "", "", &Gates::no_self_intersections, {}, GateOf::mesh, miss_no_intersections},
-      {"genus", "G", "", &Gates::genus, {}, GateOf::mesh, miss_genus},
-      {"components", "N", "", &Gates::components, {}, GateOf::mesh, miss_components},
-      {"boundary-loops", "N", "", &Gates::boundary_loops, {}, GateOf::mesh, miss_boundary_loops},
-      {"regions",
-       "",
-       "each is closed, walls are shared, no triangles intersect",
-       &Gates::regions,
-       {},
-       GateOf::mesh,
-       miss_regions},
-      {"adjacency",
-       "",
-       "regions that touch in the input share a wall, and no others do",
-       &Gates::adjacency,
-       {},
-       GateOf::input,
-       miss_adjacency},
-      {"region-volume",
-       "PERCENT",
-       "by which the volume of a region may differ from the input's",
-       &Gates::region_volume_pct,
-       {0, 100},
-       GateOf::input,
-       miss_region_volume},
-      {"min-angle", "DEG", "smallest angle in degrees", &Gates::min_angle_deg, {0, 60}, GateOf::mesh, miss_min_angle},
-      {"min-dihedral",
-       "DEG",
-       "smallest angle between triangles with a common edge",
-       &Gates::min_dihedral_deg,
-       {0, 180},
-       GateOf::mesh,
-       miss_min_dihedral},
-      {"max-deviation",
-       "W",
-       "distance between result and input in world units",
-       &Gates::max_deviation_world,
-       {},
-       GateOf::distance,
-       miss_max_deviation},
-      {"normal-deviation",
-       "DEG",
-       "mean angle between normals of result and input",
-       &Gates::normal_deviation_deg,
-       {0, 90},
-       GateOf::distance,
-       miss_normal_deviation},
-      {"count", "", "as many vertices as were asked for, to a tenth", &Gates::count, {}, GateOf::request, miss_count},
-      {"features", "", "no curve of the input is lost", &Gates::features, {}, GateOf::curves, miss_features},
-      {"kept-edges",
-       "PERCENT",
-       "of a frame that follows another: edges that it keeps, at least",
-       &Gates::kept_edges_pct,
-       {0, 100},
-       GateOf::frame,
-       miss_kept_edges},
-      {"born",
-       "N",
-       "of a frame that follows another: vertices that are new, at most",
-       &Gates::born,
-       {},
-       GateOf::frame,
-       miss_born},
-  };
-  return all;
-}
+constexpr GateRow kRows[] = {
+    {"closed", "", "", &Gates::closed, {}, GateOf::mesh, miss_closed},
+    {"manifold", "", "", &Gates::manifold, {}, GateOf::mesh, miss_manifold},
+    {"no-self-intersections", "", "", &Gates::no_self_intersections, {}, GateOf::mesh, miss_no_intersections},
+    {"genus", "G", "", &Gates::genus, {}, GateOf::mesh, miss_genus},
+    {"components", "N", "", &Gates::components, {}, GateOf::mesh, miss_components},
+    {"boundary-loops", "N", "", &Gates::boundary_loops, {}, GateOf::mesh, miss_boundary_loops},
+    {"regions",
+     "",
+     "each is closed, walls are shared, no triangles intersect",
+     &Gates::regions,
+     {},
+     GateOf::mesh,
+     miss_regions},
+    {"adjacency",
+     "",
+     "regions that touch in the input share a wall, and no others do",
+     &Gates::adjacency,
+     {},
+     GateOf::input,
+     miss_adjacency},
+    {"region-volume",
+     "PERCENT",
+     "by which the volume of a region may differ from the input's",
+     &Gates::region_volume_pct,
+     {0, 100},
+     GateOf::input,
+     miss_region_volume},
+    {"min-angle", "DEG", "smallest angle in degrees", &Gates::min_angle_deg, {0, 60}, GateOf::mesh, miss_min_angle},
+    {"min-dihedral",
+     "DEG",
+     "smallest angle between triangles with a common edge",
+     &Gates::min_dihedral_deg,
+     {0, 180},
+     GateOf::mesh,
+     miss_min_dihedral},
+    {"max-deviation",
+     "W",
+     "distance between result and input in world units",
+     &Gates::max_deviation_world,
+     {},
+     GateOf::distance,
+     miss_max_deviation},
+    {"normal-deviation",
+     "DEG",
+     "mean angle between normals of result and input",
+     &Gates::normal_deviation_deg,
+     {0, 90},
+     GateOf::distance,
+     miss_normal_deviation},
+    {"count", "", "as many vertices as were asked for, to a tenth", &Gates::count, {}, GateOf::request, miss_count},
+    {"features", "", "no curve of the input is lost", &Gates::features, {}, GateOf::curves, miss_features},
+    {"kept-edges",
+     "PERCENT",
+     "of a frame that follows another: edges that it keeps, at least",
+     &Gates::kept_edges_pct,
+     {0, 100},
+     GateOf::frame,
+     miss_kept_edges},
+    {"born",
+     "N",
+     "of a frame that follows another: vertices that are new, at most",
+     &Gates::born,
+     {},
+     GateOf::frame,
+     miss_born},
+};
 
 template <class Holds>
 bool any_row(Holds holds) {
-  return std::any_of(rows().begin(), rows().end(), holds);
+  return std::any_of(std::begin(kRows), std::end(kRows), holds);
 }
 
 bool is_requested(const GateRow& row, const Gates& gates) {
@@ -291,7 +289,7 @@ void set(const GateRow& row, const std::string& value, Gates& gates) {
 void set_gate(const std::string& gate, Gates& gates) {
   const size_t equals = gate.find('=');
   const bool has_value = equals != std::string::npos;
-  for (const GateRow& row : rows())
+  for (const GateRow& row : kRows)
     if (gate.substr(0, equals) == row.name && has_value == (*row.value_name != '\0'))
       return set(row, has_value ? gate.substr(equals + 1) : "", gates);
   refuse("--require has '" + gate + "'; gates are " + listed_gates(false));
@@ -300,7 +298,7 @@ void set_gate(const std::string& gate, Gates& gates) {
 template <class Holds>
 std::string listed(bool with_words, Holds holds) {
   std::string list;
-  for (const GateRow& row : rows()) {
+  for (const GateRow& row : kRows) {
     if (!holds(row)) continue;
     list += (list.empty() ? "" : ", ") + std::string(row.name);
     if (*row.value_name) list += std::string("=") + row.value_name;
@@ -338,7 +336,7 @@ std::string listed_gates_of_meshes(bool with_words) {
 }
 
 void check_gates_of_mesh(const Gates& gates, bool has_reference) {
-  for (const GateRow& row : rows()) {
+  for (const GateRow& row : kRows) {
     if (!is_requested(row, gates)) continue;
     const std::string requested = std::string("--require ") + row.name;
     if (row.of == GateOf::curves) refuse(requested + " is for a run that keeps curves; leave it out");
@@ -353,7 +351,7 @@ void check_gates_of_mesh(const Gates& gates, bool has_reference) {
 std::vector<std::string> missed_gates(const Gates& gates, const Measured& m) {
   std::vector<std::string> missed;
   if (gates.any()) topology(m);  // refuses a run that measured nothing
-  for (const GateRow& row : rows()) {
+  for (const GateRow& row : kRows) {
     if (!is_requested(row, gates)) continue;
     if (const std::string what = row.miss(gates, m); !what.empty())
       missed.push_back(requested_text(row, gates) + ": " + what);
