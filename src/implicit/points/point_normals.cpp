@@ -120,9 +120,9 @@ class Orientation {
     });
     int64_t cells = 0, layered = 0;
     for (size_t i = 0, end; i < seen.size(); i = end, ++cells) {
-      for (end = i; end < seen.size() && seen[end].u == seen[i].u && seen[end].v == seen[i].v;) ++end;
       double gap = 0;
-      for (size_t j = i + 1; j < end; ++j) gap = std::max(gap, seen[j].height - seen[j - 1].height);
+      for (end = i + 1; end < seen.size() && seen[end].u == seen[i].u && seen[end].v == seen[i].v; ++end)
+        gap = std::max(gap, seen[end].height - seen[end - 1].height);
       layered += gap > kLayerGap * p_.spacing;
     }
     return double(layered) / double(cells);
