@@ -28,7 +28,6 @@ constexpr double kOutlierToNeighbours = 2.2;  // times as far from its neighbour
 constexpr double kGroupLink = 4;              // what such points are at most apart in a group, in the same distance
 constexpr uint32_t kSmallGroup = 12;
 constexpr double kMostOutliers = 0.1;  // of all points
-constexpr double kMostlyHeld = 0.5;    // of the points, by the surface of sides and creases: it is none of open ground
 
 /// The different points, and their normals in the same order.
 void keep_different(std::vector<WorldPoint>& position, std::vector<WorldPoint>& normal) {
@@ -177,25 +176,15 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   const GridShape shape = shape_around(points.position, kVoxelSpacings * points.spacing, most);
   info.voxel_size_world = shape.voxel_size;
   std::vector<float> value = solve_indicator(points, shape);
-  const double level = level_at_points(points, shape, value);
+  const double level = std::max(level_at_points(points, shape, value), kLeastLevel);
   std::vector<WorldPoint> flat;
   if (creases != VolumeCreases::none) flat = find_flat_normals(points, tree);
   info.sharp = !flat.empty();
+  TriangleSoup soup = info.sharp ? extract_sharp(points, std::move(flat), {shape, value, level}, memory_limit_bytes)
+                                 : extract_smooth(shape, std::move(value), level, memory_limit_bytes);
   const PointsOfSurface around{points, tree, shape.voxel_size};
-  TriangleSoup soup;
-  if (info.sharp) {
-    const std::vector<WorldPoint> smooth = points.normal;
-    soup = extract_sharp(points, std::move(flat), {shape, value, level}, memory_limit_bytes);
-    drop_unsupported(around, soup);
-    info.held_part = held_part(around, soup);
-    info.sharp = info.held_part > kMostlyHeld;
-    if (!info.sharp) points.normal = smooth;
-  }
-  if (!info.sharp) {
-    soup = extract_smooth(shape, std::move(value), std::max(level, kLeastLevel), memory_limit_bytes);
-    drop_unsupported(around, soup);
-    info.held_part = held_part(around, soup);
-  }
+  drop_unsupported(around, soup);
+  info.held_part = held_part(around, soup);
   if (soup.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "points",
                 "the points enclose nothing: they lie on a line, or too far apart to be one surface");

@@ -58,12 +58,9 @@ class Wedges {
   std::vector<Wedge> find() const {
     std::vector<Wedge> found;
     for_each_edge(sides_, [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
-      for (int64_t i = 0; i < on_edge.size; ++i)
-        for (int64_t j = 0; j < i; ++j) {
-          const uint32_t p = apex(on_edge[i]), q = apex(on_edge[j]);
-          const double cosine = cosine_at_edge(point(at_[u]), point(at_[v]), point(at_[p]), point(at_[q]));
-          if (cosine > kLeastCosine) found.push_back({cosine, u, v, p, q});
-        }
+      for_each_pair(u, v, on_edge, [&](double cosine, uint32_t p, uint32_t q) {
+        if (cosine > kLeastCosine) found.push_back({cosine, u, v, p, q});
+      });
     });
     std::sort(found.begin(), found.end());
     return found;
@@ -92,6 +89,15 @@ class Wedges {
     return is_side;
   }
 
+  /// Calls visit(cosine, p, q) for each two triangles at an edge, by their corners beside it.
+  template <class Visit>
+  void for_each_pair(uint32_t u, uint32_t v, View<const EdgeSide> on_edge, Visit visit) const {
+    for (int64_t i = 0; i < on_edge.size; ++i)
+      for (int64_t j = 0; j < i; ++j) {
+        const uint32_t p = apex(on_edge[i]), q = apex(on_edge[j]);
+        visit(cosine_at_edge(point(at_[u]), point(at_[v]), point(at_[p]), point(at_[q])), p, q);
+      }
+  }
   uint32_t apex(const EdgeSide& side) const { return triangles_[side.half_edge / 3][(side.half_edge + 2) % 3]; }
   CornersOfTriangle corners(uint32_t t) const {
     const auto& [a, b, c] = triangles_[t];
@@ -133,10 +139,9 @@ class Wedges {
     double cosine = -1;
     const View<const EdgeSide> from = sides_.in(u);
     const EdgeSide* const begin = std::lower_bound(from.begin(), from.end(), EdgeSide{v, 0});
-    for (const EdgeSide* i = begin; i != from.end() && i->larger_end == v; ++i)
-      for (const EdgeSide* j = begin; j != i; ++j)
-        cosine =
-            std::max(cosine, cosine_at_edge(point(at_[u]), point(at_[v]), point(at_[apex(*i)]), point(at_[apex(*j)])));
+    const EdgeSide* const end = std::lower_bound(begin, from.end(), EdgeSide{v + 1, 0});
+    for_each_pair(u, v, from.part(begin - from.begin(), end - begin),
+                  [&](double of_pair, uint32_t, uint32_t) { cosine = std::max(cosine, of_pair); });
     return cosine;
   }
 
