@@ -30,9 +30,17 @@ struct FaceRegions {
   /// Between such voxels, per triangle: on which side of the volume it lies, 1 to 6, and 0 on none. There walls are
   /// cut, and flat. Empty: not known.
   std::vector<uint8_t> side = {};
+  /// Along axes on which the volume goes on with its other side: how long it is. There opposite sides, 1 and 2 of x and
+  /// so on, get the same triangles, translated. 0: not so.
+  WorldPoint period_world{0, 0, 0};
   std::vector<RegionName> names = {};  ///< ascending by label; labels may have none
 
   bool empty() const { return labels.empty(); }
+  bool is_periodic() const { return period_world.x != 0 || period_world.y != 0 || period_world.z != 0; }
+  bool is_periodic_side(uint8_t number) const {
+    const double period[4] = {0, period_world.x, period_world.y, period_world.z};
+    return period[(number + 1) / 2] != 0;
+  }
 };
 
 /// Whether a face with these labels lies in one region, or in the background, and so bounds none: it is of a sheet.
@@ -52,6 +60,9 @@ struct LabelVolume {
   /// How far walls may leave the faces of their voxels along each axis, kLeastSmoothing to 1, and a quarter farther
   /// where regions meet in curves. At 0 they are these faces, flat, and where they turn are creases.
   double smoothing_vox = 0.5;
+  /// Along which axes the array goes on with its first layer. The walls are then those of one period, from the centres
+  /// of the first layer to those of its repetition, and on both of these sides they have the same curves.
+  std::array<bool, 3> is_periodic{false, false, false};
   static constexpr double kLeastSmoothing = 0.05;  ///< that parts walls which touch one another in edges of voxels
 };
 

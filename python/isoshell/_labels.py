@@ -42,11 +42,14 @@ class Labels:
         smoothing: how far, in voxels, walls may leave the faces of their voxels along each axis to be smooth, 0.05 to 1,
             and a quarter farther where regions meet in curves; at 0 they are these faces, flat, and where they turn are
             creases.
+        periodic: axes of the array, as "x,y,z", along which it goes on with its first layer: the result has the walls of
+            one period, from the centres of that layer to those of its repetition, and opposite sides have the same
+            triangles, translated.
     """
 
     def __init__(self, array: Any, spacing: Any = (1, 1, 1), origin: Any = (0, 0, 0), affine: Any = None,
                  names: Optional[Mapping[int, str]] = None, background: int = 0, smallest_island: int = 8,
-                 smoothing: float = 0.5) -> None:
+                 smoothing: float = 0.5, periodic: str = "") -> None:
         self.array = array
         self.spacing = spacing
         self.origin = origin
@@ -55,6 +58,7 @@ class Labels:
         self.background = background
         self.smallest_island = smallest_island
         self.smoothing = smoothing
+        self.periodic = periodic
 
     def __repr__(self) -> str:
         names = f", {len(self.names)} names" if self.names else ""
@@ -91,7 +95,7 @@ def lattice_of(labels: Labels) -> _isoshell.LabelLattice:
     names = {label_of("a key of names", label): _name(label, name) for label, name in labels.names.items()}
     return _isoshell.LabelLattice(origin, steps, label_of("background", labels.background), names,
                                   label_of("smallest_island", labels.smallest_island),
-                                  _smoothing(labels.smoothing))
+                                  _smoothing(labels.smoothing), _axes(labels.periodic))
 
 
 def _smoothing(value: Any) -> float:
@@ -99,6 +103,15 @@ def _smoothing(value: Any) -> float:
     if not is_number or not (value == 0 or LEAST_SMOOTHING <= value <= 1):
         raise Error(f"smoothing is {value!r}; it must be a number from {LEAST_SMOOTHING} to 1, or 0 for the faces of voxels")
     return float(value)
+
+
+def _axes(periodic: Any) -> list[bool]:
+    names = periodic.split(",") if isinstance(periodic, str) and periodic else periodic
+    if isinstance(names, str) and not names:
+        names = []
+    if not isinstance(names, (list, tuple)) or any(name not in ("x", "y", "z") for name in names):
+        raise Error(f'periodic is {periodic!r}; give axes: "x", "y", "z", as in "x,y"')
+    return [axis in names for axis in "xyz"]
 
 
 def _of_spacing(spacing: Any, origin: Any) -> tuple[Triple, list[Triple]]:

@@ -61,6 +61,9 @@ class Options(TypedDict, total=False):
             of each region; 0: none do [8].
         smoothing: of a volume of labels: how far, in voxels, walls may leave the faces of their voxels to be smooth; at
             0 they are these faces, flat, with creases where they turn [0.5].
+        periodic: of a volume of labels: axes of its array, as x,y,z, along which it goes on with its first layer: walls
+            of one period, from the centres of that layer to those of its repetition, with the same triangles on
+            opposite sides [none].
         input_format: format of INPUT: ply, obj, stl, off, glb, gltf, xyz, pcd, vdb or nvdb [by its name].
         output_format: format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb [by its name].
         save_shell: also write the shell, to resume from.
@@ -124,6 +127,7 @@ class Options(TypedDict, total=False):
     background: Optional[int]
     smallest_island: Optional[int]
     smoothing: Optional[float]
+    periodic: Optional[int]
     input_format: Optional[str]
     output_format: Optional[str]
     save_shell: Optional[Path]

@@ -40,6 +40,7 @@ LabelVolume label_volume_of(const AnyArray& labels, const LabelLattice& lattice)
   volume.background = lattice.background;
   volume.smallest_island_vox = lattice.smallest_island_vox;
   volume.smoothing_vox = lattice.smoothing_vox;
+  volume.is_periodic = lattice.is_periodic;
   for (const auto& [label, name] : lattice.names) volume.names.push_back({label, name});
   return volume;
 }
@@ -49,14 +50,15 @@ void bind_labels(nb::module_& m) {
       .def(
           "__init__",
           [](LabelLattice* self, const Triple& origin, const std::array<Triple, 3>& steps, int32_t background,
-             std::map<int32_t, std::string> names, int64_t smallest_island, double smoothing) {
-            new (self) LabelLattice{origin, steps, background, std::move(names), smallest_island, smoothing};
+             std::map<int32_t, std::string> names, int64_t smallest_island, double smoothing,
+             std::array<bool, 3> periodic) {
+            new (self) LabelLattice{origin, steps, background, std::move(names), smallest_island, smoothing, periodic};
           },
           nb::arg("origin"), nb::arg("steps"), nb::arg("background"), nb::arg("names"), nb::arg("smallest_island"),
-          nb::arg("smoothing"),
+          nb::arg("smoothing"), nb::arg("periodic"),
           nb::sig("def __init__(self, origin: collections.abc.Sequence[float], steps: "
                   "collections.abc.Sequence[collections.abc.Sequence[float]], background: int, names: dict[int, str], "
-                  "smallest_island: int, smoothing: float) -> None"));
+                  "smallest_island: int, smoothing: float, periodic: collections.abc.Sequence[bool]) -> None"));
   m.def("write_labels", write, nb::arg("path"), nb::arg("labels"), nb::arg("lattice"), nb::arg("overwrite"),
         nb::sig("def write_labels(path: str, labels: typing.Any, lattice: LabelLattice, overwrite: bool) -> None"));
 }

@@ -22,6 +22,7 @@ struct LabelLattice {
   std::map<int32_t, std::string> names;
   int64_t smallest_island_vox = 8;
   double smoothing_vox = 0.5;
+  std::array<bool, 3> is_periodic{false, false, false};
 };
 
 /// Throws: usage, as labels_of() does.

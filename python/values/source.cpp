@@ -35,12 +35,12 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-[[noreturn]] void refuse(const char* message) { throw Error(ErrorCode::usage, "arguments", message); }
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "arguments", message); }
 
 /// Of what is in memory and no volume of labels.
 void refuse_label_options(const RunRequest& request) {
   if (const char* const option = request.input.labels.given())
-    throw Error(ErrorCode::usage, "arguments", std::string(option) + " is for volumes of labels; leave it out");
+    refuse(std::string(option) + " is for volumes of labels; leave it out");
 }
 /// Of what is no volume.
 void refuse_volume_options(const RunRequest& request) {
@@ -161,7 +161,7 @@ Source labels(const AnyArray& values, const LabelLattice& lattice) {
           [given](const RunRequest& request, const Context& context) {
             if (request.input.iso) refuse("--iso is for volumes; leave it out");
             if (request.input.labels.given())
-              refuse("--background, --smallest-island and --smoothing are for files; give them to isoshell.Labels");
+              refuse(std::string(request.input.labels.given()) + " is for files; give it to isoshell.Labels");
             return input_of(std::move(*given), "labels", context, request.tell);
           },
           {},

@@ -207,6 +207,7 @@ class Reader {
     LabelGrid grid = read_label_grid(source, {request.grid, context_.memory_limit_bytes, request.labels.background});
     if (request.labels.smallest_island_vox) grid.volume.smallest_island_vox = *request.labels.smallest_island_vox;
     if (request.labels.smoothing_vox) grid.volume.smoothing_vox = *request.labels.smoothing_vox;
+    if (request.labels.is_periodic) grid.volume.is_periodic = *request.labels.is_periodic;
     hold(std::move(grid.volume), "grid " + grid.name + ", ");
   }
 

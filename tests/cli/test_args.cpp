@@ -210,12 +210,13 @@ TEST_CASE("args: options by name mean what they mean on the command line", "[cli
   CHECK(a.run.options.values.features.creases == Features::Creases::off);
   CHECK(a.run.options.given == std::vector<std::string>{"vertices", "outer-only", "features", "iso"});
   CHECK(a.run.input.iso == -2.);
-  const LabelReading labels =
-      parse({"a.vdb:seg", "b.ply", "--background=-3", "--smallest-island", "0", "--smoothing", ".25"})
-          .run->run.input.labels;
+  const LabelReading labels = parse({"a.vdb:seg", "b.ply", "--background=-3", "--smallest-island", "0", "--smoothing",
+                                     ".25", "--periodic", "z,x"})
+                                  .run->run.input.labels;
   CHECK(labels.background == -3);
   CHECK(labels.smallest_island_vox == 0);
   CHECK(labels.smoothing_vox == .25);
+  CHECK(labels.is_periodic == std::array{true, false, true});
   const RequestedOptions sized =
       parse({"a.vdb", "b.ply", "--region-edge-length", "7=.5", "--region-edge-length", "a=b=2"}).run->run.options;
   REQUIRE(sized.values.region_edge_lengths.size() == 2);
@@ -229,6 +230,7 @@ TEST_CASE("args: options by name mean what they mean on the command line", "[cli
       contains(refusal({"a.vdb", "b.ply", "--region-edge-length", "7=0"}), "of region 7 is 0; it must be more than 0"));
   CHECK(contains(refusal({"a.vdb", "b.ply", "--smallest-island=-1"}), "--smallest-island is -1; it must be 0 to"));
   CHECK(contains(refusal({"a.vdb", "b.ply", "--smoothing", "1.5"}), "--smoothing is 1.5; it must be 0 to 1"));
+  CHECK(contains(refusal({"a.vdb", "b.ply", "--periodic", "x,w"}), "--periodic is 'x,w'; give axes, x, y or z"));
   CHECK(a.run.output.path.empty());
   CHECK(parse_given_options({}, "out.ply").run.output.format == "ply");
 }

@@ -1,8 +1,10 @@
 #include "vdb_isomesh/options.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <sstream>
 
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
@@ -39,6 +41,19 @@ void set_smoothing(const std::string& text, Arguments& a) {
   const double voxels = parse_number("--smoothing", text);
   check_range("--smoothing", voxels, kSmoothing);
   a.run.input.labels.smoothing_vox = voxels;
+}
+
+void set_periodic(const std::string& text, Arguments& a) {
+  const std::string names = "xyz";
+  std::array<bool, 3> axes{false, false, false};
+  std::istringstream listed(text);
+  for (std::string axis; std::getline(listed, axis, ',');) {
+    const size_t at = axis.size() == 1 ? names.find(axis) : std::string::npos;
+    if (at == std::string::npos)
+      throw Error(ErrorCode::usage, "command line", "--periodic is '" + text + "'; give axes, x, y or z, as in x,y");
+    axes[at] = true;
+  }
+  a.run.input.labels.is_periodic = axes;
 }
 
 void set_threads(const std::string& text, Arguments& a) {
@@ -120,6 +135,11 @@ std::vector<CommandOption> file_options() {
         "are these faces, flat, with creases where they turn",
         "0.5", true, false, kSmoothing},
        set_smoothing},
+      {{group, "periodic", "AXES",
+        "of a volume of labels: axes of its array, as x,y,z, along which it goes on with its first layer: walls of one "
+        "period, from the centres of that layer to those of its repetition, with the same triangles on opposite sides",
+        "none"},
+       set_periodic},
       {{group, "input-format", "F", "format of INPUT: " + listed_formats(reads_anything), "by its name"},
        [](const std::string& text, Arguments& a) { a.run.input.format = text; }},
       {{group, "output-format", "F", "format of OUTPUT: " + listed_formats(writes_mesh, ", ") + " or vdb",

@@ -1,6 +1,7 @@
 // Whatever a run can start from, read by one call: a mesh, points, a volume or a stage file.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,13 +27,15 @@ struct LabelReading {
   std::optional<int32_t> background;           ///< the label of what is no region
   std::optional<int64_t> smallest_island_vox;  ///< islands of fewer voxels get the label around them
 
-  std::optional<double> smoothing_vox;  ///< how far walls may leave the faces of their voxels
+  std::optional<double> smoothing_vox;             ///< how far walls may leave the faces of their voxels
+  std::optional<std::array<bool, 3>> is_periodic;  ///< axes along which opposite sides get the same triangles
 
   /// The option that was given first; null where none was.
   const char* given() const {
     return background            ? "--background"
            : smallest_island_vox ? "--smallest-island"
            : smoothing_vox       ? "--smoothing"
+           : is_periodic         ? "--periodic"
                                  : nullptr;
   }
 };

@@ -13,11 +13,11 @@ from . import package
 
 def taken(given: Any, options: dict[str, Any]) -> Any:
     """Labels with the image's affine; with an isovalue, and where values are not whole, a Volume. Of the options, background,
-    smallest_island and smoothing, which are of labels, are taken out.
+    smallest_island, smoothing and periodic, which are of labels, are taken out.
 
     Raises:
         Error: of code USAGE for what is no image of three dimensions, for a Volume that is turned, and for
-            options that are no numbers, whole ones but for smoothing.
+            options that are not what Labels takes.
     """
     import numpy as np
 
@@ -34,8 +34,9 @@ def taken(given: Any, options: dict[str, Any]) -> Any:
         for name in ("background", "smallest_island"):
             if options.get(name) is not None:
                 setattr(labels, name, whole_number_of(name, options.pop(name)))
-        if options.get("smoothing") is not None:
-            labels.smoothing = options.pop("smoothing")
+        for name in ("smoothing", "periodic"):
+            if options.get(name) is not None:
+                setattr(labels, name, options.pop(name))
         return labels
     return _volume_of(values, np.array(affine, float))
 

@@ -229,9 +229,10 @@ def test_files_of_labels_are_read_as_labels_say_it(tmp_path):
     speckled[3, 3, 3] = speckled[9:12, 9:12, 9:12] = 2
     path = tmp_path / "speckled.vdb"
     Labels(speckled).save(path)
-    for how in ({"smallest_island": 0}, {"background": 1, "smallest_island": 0}, {"smoothing": 0.25}):
+    for how in ({"smallest_island": 0}, {"background": 1, "smallest_island": 0}, {"smoothing": 0.25},
+                {"periodic": "x,z"}):
         assert isoshell.remesh(path, **how, **QUICK).digest == isoshell.remesh(Labels(speckled, **how), **QUICK).digest
-    with pytest.raises(isoshell.Error, match="give them to isoshell.Labels"):
+    with pytest.raises(isoshell.Error, match="give it to isoshell.Labels"):
         isoshell.remesh(Labels(speckled), background=1, **QUICK)
     with pytest.raises(isoshell.Error, match="smallest_island is for volumes of labels"):
         isoshell.remesh(([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), smallest_island=1, **QUICK)

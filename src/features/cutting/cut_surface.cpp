@@ -11,6 +11,7 @@
 #include "features/mesh/refine_mesh.h"
 #include "features/seeds/edge_lengths.h"
 #include "features/seeds/path_seeds.h"
+#include "features/seeds/tied_paths.h"
 #include "geometry/half_edges.h"
 #include "geometry/world_vector.h"
 #include "isoshell/error.h"
@@ -92,10 +93,13 @@ FineMesh refined(const FeatureMesh& mesh, const CurveNetwork& network, const Lat
   if (options.vertices > 0 || options.requested.vary())
     vary_edge_lengths(fine, graph, facing,
                       {options.vertices, options.requested.growth, options.requested.are_places(), options.is_rough});
+  const TiedPaths tied(fine, (kOneVoxelQ8 / frame.voxel_size) * options.period_world);
+  tied.share_lengths(fine);
   check_cancel(context, "features");
   std::vector<WorldPoint> before;
   for (const WorldPoint& p : options.before) before.push_back(on_lattice(frame, p));
   place_path_seeds(fine, facing, before);
+  tied.share_seeds(fine);
   fine = refine_mesh(std::move(fine), context);
   begin_loops_at_seeds(fine);
   return flip_flat_edges(std::move(fine), &twins);

@@ -63,6 +63,7 @@ struct CutOptions {
   int64_t vertices = 0;                 ///< above 0: lengths vary, and so many vertices have them (see edge_lengths.h)
   RequestedLengths requested = {};      ///< in proportion to these, or with 0 vertices these
   bool is_rough = false;                ///< turns, of curves too, are no bends: it is made of voxels
+  WorldPoint period_world{0, 0, 0};     ///< along axes on which a volume goes on with its other side; 0 along others
   std::vector<WorldPoint> before = {};  ///< vertices of another mesh, which stay seeds of curves where they lie on one
 };
 

@@ -52,9 +52,9 @@ void EditableMesh::list_neighbours(uint32_t v, std::vector<uint32_t>& out) const
 }
 
 void EditableMesh::list_targets(uint32_t v, std::vector<uint32_t>& out) const {
-  if (vertices_[v].kind == RegionVertex::Kind::free) return list_neighbours(v, out);
   out.clear();
-  if (vertices_[v].kind == RegionVertex::Kind::corner) return;
+  if (vertices_[v].kind == RegionVertex::Kind::corner || vertices_[v].is_fixed) return;
+  if (vertices_[v].kind == RegionVertex::Kind::free) return list_neighbours(v, out);
   for_each_around(v, [&](uint32_t t) {
     for (size_t i = 0; i < 3; ++i) {
       const uint32_t a = triangles_[t].corner[i], b = triangles_[t].corner[(i + 1) % 3];
@@ -95,6 +95,7 @@ bool EditableMesh::list_flip(uint32_t triangle, size_t edge, MeshChange& change)
   const size_t back = s.edge_between(b, a);
   const uint32_t d = s.corner[(back + 2) % 3];
   if (c == d || s.patch != t.patch) return false;
+  if (vertices_[a].is_fixed && vertices_[b].is_fixed) return false;
   if (!vertices_[c].is_inner && !vertices_[d].is_inner) return false;
   change.clear();
   change.replaced.resize(2);
@@ -122,7 +123,8 @@ bool EditableMesh::may_meet_neighbours(uint32_t gone, uint32_t into, MeshChange&
 /// No two edges on curves become one.
 bool EditableMesh::list_collapse(uint32_t gone, uint32_t into, MeshChange& change) const {
   const RegionVertex& from = vertices_[gone];
-  if (from.kind == RegionVertex::Kind::corner || !from.is_inner || !vertices_[into].is_inner) return false;
+  if (from.kind == RegionVertex::Kind::corner || from.is_fixed || !from.is_inner || !vertices_[into].is_inner)
+    return false;
   if (from.kind == RegionVertex::Kind::on_curve && curve_between(gone, into).value_or(kNone) == kNone) return false;
   if (!may_meet_neighbours(gone, into, change)) return false;
   change.clear();
@@ -147,6 +149,7 @@ bool EditableMesh::list_collapse(uint32_t gone, uint32_t into, MeshChange& chang
 
 bool EditableMesh::list_split(uint32_t u, uint32_t v, MeshChange& change) const {
   if (!vertices_[u].is_inner && !vertices_[v].is_inner) return false;
+  if (vertices_[u].is_fixed && vertices_[v].is_fixed) return false;
   const auto middle = uint32_t(vertices_.size());
   change.clear();
   for_each_side(u, v, [&](const Side& s) {
@@ -170,12 +173,26 @@ void EditableMesh::list_around(uint32_t v, MeshChange& change) const {
   change.number = change.replaced;
 }
 
+/// A triangle between three of them could lie on others that are fixed.
+bool EditableMesh::has_only_fixed(const RegionTriangle& t) const {
+  return std::all_of(t.corner.begin(), t.corner.end(), [&](uint32_t v) { return vertices_[v].is_fixed; });
+}
+
 bool EditableMesh::are_free(MeshChange& change) const {
+  if (std::any_of(change.made.begin(), change.made.end(), [&](const auto& t) { return has_only_fixed(t); }))
+    return false;
   if (!space_) return true;
   change.corners.clear();
   for (const RegionTriangle& t : change.made) change.corners.push_back(corners(t));
   return space_->are_free(change.corners, change.replaced) || space_->meet_no_more(change.corners, change.replaced);
 }
+
+void EditableMesh::add(const RegionTriangle& t) {
+  triangles_.push_back(kGone);
+  replace(uint32_t(triangles_.size() - 1), t);
+}
+
+void EditableMesh::remove(uint32_t triangle) { replace(triangle, kGone); }
 
 bool EditableMesh::commit(MeshChange& change) {
   if (!are_free(change)) return false;

@@ -20,6 +20,7 @@ struct RegionVertex {
   enum class Kind : uint8_t { corner, on_curve, free };
   Kind kind = Kind::free;
   bool is_inner = true;     ///< all its triangles are in the mesh
+  bool is_fixed = false;    ///< neither it nor edges between such change, and no triangles between such are made
   bool is_settled = false;  ///< relaxed: it is where it is to be, and is evened out no more
   WorldPoint position;      ///< steps of 1/256 voxel, whole ones in results: the guard leaves fractions out
   uint32_t home = 0;        ///< vertex of the surface; off the free ones a copy of their place
@@ -156,7 +157,7 @@ class EditableMesh {
   template <class Allow>
   bool move(uint32_t v, const RegionVertex& to, MeshChange& change, Allow allow) {
     const RegionVertex before = vertices_[v];
-    if (before.kind == RegionVertex::Kind::corner) return false;
+    if (before.kind == RegionVertex::Kind::corner || before.is_fixed) return false;
     list_around(v, change);
     place(v, to);
     if (allow() && commit(change)) return true;
@@ -186,6 +187,10 @@ class EditableMesh {
   }
   void add_vertex(const RegionVertex& v);
   void drop_last_vertex();
+  void fix(uint32_t v) { vertices_[v].is_fixed = true; }
+  /// Without a look at what a triangle meets.
+  void add(const RegionTriangle& t);
+  void remove(uint32_t triangle);
   /// Where nothing comes to meet.
   bool commit(MeshChange& change);
 
@@ -204,6 +209,7 @@ class EditableMesh {
   bool list_split(uint32_t u, uint32_t v, MeshChange& change) const;
   void list_around(uint32_t v, MeshChange& change) const;
   bool may_meet_neighbours(uint32_t gone, uint32_t into, MeshChange& change) const;
+  bool has_only_fixed(const RegionTriangle& t) const;
   bool are_free(MeshChange& change) const;
   void replace(uint32_t triangle, const RegionTriangle& by);
 

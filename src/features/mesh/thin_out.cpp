@@ -34,7 +34,7 @@ constexpr uint32_t kStays = kNone - 1;  ///< a corner, or what is no surface and
 class ThinnedWalls : public CollapsingMesh<ThinnedWalls, double> {
  public:
   /// A patch between curves with fewer vertices inside than `fewest` stays as it is.
-  ThinnedWalls(FeatureMesh mesh, const EdgeList& creases, const LatticeFrame& frame, double edge_world, uint32_t fewest)
+  ThinnedWalls(FeatureMesh mesh, const KeptInWalls& kept, const LatticeFrame& frame, double edge_world, uint32_t fewest)
       : CollapsingMesh(std::move(mesh.triangles), mesh.vertices.size()),
         mesh_(std::move(mesh)),
         edge_world_(edge_world),
@@ -46,7 +46,8 @@ class ThinnedWalls : public CollapsingMesh<ThinnedWalls, double> {
       normal_[v] = normal_at(v);
       place_[v] = frame.snap(mesh_.vertices[v]);
     });
-    find_curves(creases);
+    find_curves(kept.creases);
+    for (const uint32_t v : kept.vertices) curve_[v] = kStays;
     keep_small_patches(fewest);
   }
 
@@ -285,11 +286,11 @@ class ThinnedWalls : public CollapsingMesh<ThinnedWalls, double> {
 
 }  // namespace
 
-FeatureMesh thin_out(FeatureMesh mesh, const EdgeList& creases, const LatticeFrame& frame, double edge_world,
+FeatureMesh thin_out(FeatureMesh mesh, const KeptInWalls& kept, const LatticeFrame& frame, double edge_world,
                      uint32_t fewest, const Context& context) {
   if (mesh.triangles.empty()) return mesh;
   return run_with_threads(context, [&] {
-    ThinnedWalls thinned(std::move(mesh), creases, frame, edge_world, fewest);
+    ThinnedWalls thinned(std::move(mesh), kept, frame, edge_world, fewest);
     thinned.run(context);
     return thinned.left();
   });

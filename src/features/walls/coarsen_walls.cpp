@@ -7,6 +7,7 @@
 #include "features/angles/widen_angles.h"
 #include "features/walls/coarsen.h"
 #include "features/walls/even_out.h"
+#include "features/walls/periodic_sides.h"
 
 namespace isoshell {
 
@@ -20,6 +21,12 @@ void coarsen_walls(WallMesh& mesh, int64_t vertices, const Context& context) {
 JoinedPatches widened_to_count(PatchMesh mesh, const Context& context) {
   widen(mesh, context);
   const JoinOptions options = mesh.options();
+  if (has_periodic_sides(mesh.lookup().cut())) {
+    const auto lookup = mesh.shared_lookup();
+    mesh = PatchMesh(lookup, run_with_threads(context, [&] { return with_same_sides(*lookup, std::move(mesh)); }),
+                     options);
+    widen(mesh, context);
+  }
   if (options.is_steady || mesh.surplus() <= 0) return mesh.joined();
   const int64_t left_alone = mesh.left_alone();
   return run_with_threads(context, [&] {

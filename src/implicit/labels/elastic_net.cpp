@@ -16,9 +16,10 @@ constexpr int32_t kMostOfThin = kOneVoxelFine * 3 / 8;
 /// Curves on both sides of a face go no farther towards each other where they are a voxel apart: of the strip of wall
 /// between them is left as much as triangles without small angles need.
 constexpr int32_t kStripReach = kOneVoxelFine * 5 / 16;
+constexpr int32_t kOffSides = kOneVoxelFine / 4;
 constexpr double kSlopeShare = 0.25;  ///< of the slope, in a step: over what bends of regular walls grow by at most
 
-int32_t rest_of(int32_t halves) { return halves * (kOneVoxelFine / 2); }
+int32_t rest_of(int32_t quarters) { return quarters * (kOneVoxelFine / 4); }
 
 FinePoint all_along(int32_t part) { return FinePoint{part, part, part, 0}; }
 
@@ -34,12 +35,17 @@ FinePoint share_of(int32_t share, const FinePoint& p) {
 }  // namespace
 
 ElasticNet::ElasticNet(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, double farthest_vox)
-    : walls_(walls), links_(walls, faces_at), at_(walls.rest_halves.size()), bend_(at_.size()), box_(at_.size()) {
+    : walls_(walls), links_(walls, faces_at), at_(walls.rest_quarters.size()), bend_(at_.size()), box_(at_.size()) {
   for_each_index(size_t(0), at_.size(), [&](size_t v) {
-    const Voxel& h = walls.rest_halves[v];
-    at_[v] = FinePoint{rest_of(h.x), rest_of(h.y), rest_of(h.z), 0};
+    at_[v] = rest(v);
     box_[v] = box_of(v, farthest_vox, faces_at);
   });
+  tie_boxes();
+}
+
+FinePoint ElasticNet::rest(size_t vertex) const {
+  const Voxel& q = walls_.rest_quarters[vertex];
+  return FinePoint{rest_of(q.x), rest_of(q.y), rest_of(q.z), 0};
 }
 
 int32_t ElasticNet::reach_of(size_t vertex, double farthest_vox) const {
@@ -59,10 +65,10 @@ ElasticNet::Box ElasticNet::box_of(size_t vertex, double farthest_vox, const Buc
   for (const uint32_t f : faces_at.in(int64_t(vertex)))
     for (const uint32_t v : walls_.faces[f]) {
       if (v == kNone || !links_.is_strip_between(uint32_t(vertex), v, walls_.faces[f])) continue;
-      const Voxel &own = walls_.rest_halves[vertex], &other = walls_.rest_halves[v];
+      const Voxel &own = walls_.rest_quarters[vertex], &other = walls_.rest_quarters[v];
       const int32_t way[3] = {other.x - own.x, other.y - own.y, other.z - own.z};
       for (int axis = 0; axis < 3; ++axis) {
-        const int32_t reach_of_strip = std::min(reach, kStripReach) * std::abs(way[axis]) / 2;
+        const int32_t reach_of_strip = std::min(reach, kStripReach) * std::abs(way[axis]) / 4;
         if (way[axis] < 0) box.low[axis] = std::max(box.low[axis], rest[axis] - reach_of_strip);
         if (way[axis] > 0) box.high[axis] = std::min(box.high[axis], rest[axis] + reach_of_strip);
       }
@@ -70,13 +76,49 @@ ElasticNet::Box ElasticNet::box_of(size_t vertex, double farthest_vox, const Buc
   return box;
 }
 
-/// Where a volume ends what it shows goes on: it is cut there, and the cut is flat.
+/// Where a volume ends what it shows goes on: it is cut there, and the cut is flat. Other vertices keep off
+/// it, where half of a voxel is all that is between.
 void ElasticNet::keep_on_sides(size_t vertex, Box& box) const {
-  const Voxel &h = walls_.rest_halves[vertex], &size = walls_.size_vox;
-  const bool is_on_side[3] = {h.x == 0 || h.x == 2 * size.x, h.y == 0 || h.y == 2 * size.y,
-                              h.z == 0 || h.z == 2 * size.z};
-  for (int axis = 0; axis < 3; ++axis)
-    if (is_on_side[axis]) box.low[axis] = box.high[axis] = at_[vertex][axis];
+  const auto fine = [](const Voxel& quarters) {
+    return FinePoint{rest_of(quarters.x), rest_of(quarters.y), rest_of(quarters.z), 0};
+  };
+  const FinePoint low = fine(walls_.low_quarters), high = fine(walls_.high_quarters), &at = at_[vertex];
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool is_on_side = at[axis] == low[axis] || at[axis] == high[axis];
+    if (is_on_side) {
+      box.low[axis] = box.high[axis] = at[axis];
+    } else if (low[axis] > 0) {  // it is periodic
+      box.low[axis] = std::max(box.low[axis], low[axis] + kOffSides);
+      box.high[axis] = std::min(box.high[axis], high[axis] - kOffSides);
+    }
+  }
+}
+
+/// Vertices that are one go where each of them may.
+void ElasticNet::tie_boxes() {
+  for (const std::vector<uint32_t>& group : walls_.tied) {
+    Box ways = box_[group[0]];
+    ways.low -= at_[group[0]], ways.high -= at_[group[0]];
+    for (const uint32_t v : group)
+      for (int axis = 0; axis < 3; ++axis) {
+        ways.low[axis] = std::max(ways.low[axis], box_[v].low[axis] - at_[v][axis]);
+        ways.high[axis] = std::min(ways.high[axis], box_[v].high[axis] - at_[v][axis]);
+      }
+    for (const uint32_t v : group) box_[v] = {at_[v] + ways.low, at_[v] + ways.high};
+  }
+}
+
+/// They are as far from their rest as they are in the mean.
+void ElasticNet::tie(std::vector<FinePoint>& position) const {
+  for (const std::vector<uint32_t>& group : walls_.tied) {
+    int64_t sum[3] = {0, 0, 0};
+    for (const uint32_t v : group) {
+      const FinePoint way = position[v] - rest(v);
+      for (int axis = 0; axis < 3; ++axis) sum[axis] += way[axis];
+    }
+    const auto mean = [&](int64_t of) { return int32_t(of / int64_t(group.size())); };
+    for (const uint32_t v : group) position[v] = rest(v) + FinePoint{mean(sum[0]), mean(sum[1]), mean(sum[2]), 0};
+  }
 }
 
 /// This share of the way to the mean of those that a vertex follows.
@@ -107,6 +149,7 @@ void ElasticNet::step(double share) {
   for_each_index(size_t(0), at_.size(),
                  [&](size_t v) { bend_[v] = within_reach(v, at_[v] + mean_way(v, at_, whole)); });
   at_.swap(bend_);
+  tie(at_);
 }
 
 /// What the bend at a vertex of a wall is for a curve beside it.
@@ -156,6 +199,8 @@ void ElasticNet::unbend(int steps, double stiffness_of_curves, const std::functi
       ahead[v] = to + share_of(momentum, to - at_[v]);
       at_[v] = to;
     });
+    tie(ahead);
+    tie(at_);
   }
 }
 

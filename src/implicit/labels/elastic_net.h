@@ -43,6 +43,7 @@ class ElasticNet {
       const auto by = way(v);
       at_[v] = within_reach(v, at_[v] + FinePoint{fine(by.x), fine(by.y), fine(by.z), 0});
     });
+    tie(at_);
   }
   std::vector<PointQ8> rounded() const;
 
@@ -51,9 +52,12 @@ class ElasticNet {
     FinePoint low, high;
   };
 
+  FinePoint rest(size_t vertex) const;
   int32_t reach_of(size_t vertex, double farthest_vox) const;
   Box box_of(size_t vertex, double farthest_vox, const Buckets<uint32_t>& faces_at) const;
   void keep_on_sides(size_t vertex, Box& box) const;
+  void tie_boxes();
+  void tie(std::vector<FinePoint>& position) const;
   FinePoint mean_way(size_t vertex, const std::vector<FinePoint>& field, int32_t share) const;
   FinePoint pull_of(uint32_t beside) const;
   FinePoint slope_at(size_t vertex) const;

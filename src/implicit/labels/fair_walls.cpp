@@ -64,12 +64,25 @@ Faces faces_near(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, con
   return near;
 }
 
+/// With those that are one with some of these; ascending.
+std::vector<uint32_t> with_tied(const LabelWalls& walls, std::vector<uint32_t> vertices) {
+  const size_t count = vertices.size();
+  for (const std::vector<uint32_t>& group : walls.tied)
+    if (std::any_of(group.begin(), group.end(), [&](uint32_t v) {
+          return std::binary_search(vertices.begin(), vertices.begin() + int64_t(count), v);
+        }))
+      vertices.insert(vertices.end(), group.begin(), group.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
 /// Lets vertices go back, as far as that takes, to where no triangles intersect: half of the way, and at last all of
 /// it. After the first look only what moved can intersect anything.
 void part_crossing(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, const std::vector<PointQ8>& parted,
                    std::vector<PointQ8>& position, const Context& context) {
   std::vector<uint8_t> rounds(position.size(), 0);
-  std::vector<uint32_t> back = crossing_vertices(walls.faces, position, context);
+  std::vector<uint32_t> back = with_tied(walls, crossing_vertices(walls.faces, position, context));
   for (int round = 0; !back.empty(); ++round) {
     if (round == kMostRounds) {
       position = parted;
@@ -81,7 +94,7 @@ void part_crossing(const LabelWalls& walls, const Buckets<uint32_t>& faces_at, c
       const PointQ8 &at = position[v], &to = parted[v];
       position[v] = {between(at.x, to.x), between(at.y, to.y), between(at.z, to.z)};
     }
-    back = crossing_vertices(faces_near(walls, faces_at, back, position), position, context);
+    back = with_tied(walls, crossing_vertices(faces_near(walls, faces_at, back, position), position, context));
   }
 }
 

@@ -42,11 +42,7 @@ WorldPoint normal_of(const std::array<uint32_t, 4>& face, const std::vector<Poin
 VolumeKeeper::VolumeKeeper(const LabelWalls& walls, const Buckets<uint32_t>& faces_at)
     : walls_(walls), faces_at_(faces_at) {
   number_pairs();
-  std::vector<PointQ8> rest(walls.rest_halves.size());
-  for_each_index(size_t(0), rest.size(), [&](size_t v) {
-    const Voxel& h = walls.rest_halves[v];
-    rest[v] = {h.x * (kOneVoxelQ8 / 2), h.y * (kOneVoxelQ8 / 2), h.z * (kOneVoxelQ8 / 2)};
-  });
+  const std::vector<PointQ8> rest = walls.at_rest();
   add_by_pair([&](const std::array<uint32_t, 4>& face, Pair& sum) { sum.rest += spanned(face, rest); });
 }
 

@@ -16,6 +16,7 @@ class LabelRows {
       : volume_(volume), outside_(size_t(volume.size_vox[0]), volume.background) {}
 
   int32_t size(int axis) const { return volume_.size_vox[size_t(axis)]; }
+  bool is_periodic(int axis) const { return volume_.is_periodic[size_t(axis)]; }
   int32_t background() const { return volume_.background; }
   /// As many labels as there are along x.
   const int32_t* row(int32_t y, int32_t z) const {

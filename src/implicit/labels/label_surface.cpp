@@ -24,6 +24,11 @@ constexpr int64_t kBytesPerRun = 100;  ///< while islands are looked for; measur
 
 [[noreturn]] void refuse_use(const std::string& message) { throw Error(ErrorCode::usage, "read", message); }
 
+bool is_periodic(const LabelVolume& volume) {
+  const auto& axes = volume.is_periodic;
+  return std::any_of(axes.begin(), axes.end(), [](bool is) { return is; });
+}
+
 double spanned_world(const LabelVolume& volume) {
   return dot(volume.step_world[0], cross(volume.step_world[1], volume.step_world[2]));
 }
@@ -85,6 +90,42 @@ double voxel_size_world(const LabelVolume& volume) {
   return least;
 }
 
+/// The axis of the world that is nearest to one of the array.
+size_t world_axis(const LabelVolume& volume, size_t axis) {
+  const WorldPoint& step = volume.step_world[axis];
+  const double along[3] = {std::abs(step.x), std::abs(step.y), std::abs(step.z)};
+  return size_t(std::max_element(along, along + 3) - along);
+}
+
+/// Of a periodic volume, whose axes are those of the world, its sides by these.
+std::array<uint8_t, 7> sides_of_world(const LabelVolume& volume) {
+  std::array<uint8_t, 7> sides{0};
+  for (size_t axis = 0; axis < 3; ++axis)
+    for (size_t end = 1; end < 3; ++end)
+      sides[2 * axis + end] = uint8_t(2 * (is_periodic(volume) ? world_axis(volume, axis) : axis) + end);
+  return sides;
+}
+WorldPoint period_world(const LabelVolume& volume) {
+  double period[3] = {0, 0, 0};
+  for (size_t axis = 0; axis < 3; ++axis)
+    if (volume.is_periodic[axis])  // the last layer is the first one again
+      period[world_axis(volume, axis)] = (volume.size_vox[axis] - 1) * length(volume.step_world[axis]);
+  return {period[0], period[1], period[2]};
+}
+
+/// Of what is on the lattice a translation by a period must be on it, too.
+void check_periodic(const LabelVolume& volume, const std::string& name) {
+  if (!is_periodic(volume)) return;
+  if (volume.smoothing_vox == 0)
+    refuse_use(name + ": a periodic volume has no walls that are faces of its voxels; give a smoothing above 0");
+  if (voxel_size_world(volume) == 0)
+    refuse_use(name + ": a periodic volume has voxels along the axes of the world whose sides are whole multiples of " +
+               "the shortest one; resample it");
+  for (size_t axis = 0; axis < 3; ++axis)
+    if (volume.is_periodic[axis] && volume.size_vox[axis] == kMaxResolution)
+      refuse_use(name + ": along a periodic axis a volume has fewer voxels than " + std::to_string(kMaxResolution));
+}
+
 /// A region by its label and name.
 std::string shown(int32_t label, const LabelVolume& volume) {
   for (const RegionName& region : volume.names)
@@ -108,15 +149,6 @@ void tell_of(const AbsorbedIslands& absorbed, const LabelVolume& volume, const T
   tell(MessageKind::warning, text);
 }
 
-/// The corners of the faces of voxels.
-std::vector<PointQ8> at_rest(const LabelWalls& walls) {
-  std::vector<PointQ8> out;
-  out.reserve(walls.rest_halves.size());
-  for (const Voxel& halves : walls.rest_halves)
-    out.push_back({halves.x * (kOneVoxelQ8 / 2), halves.y * (kOneVoxelQ8 / 2), halves.z * (kOneVoxelQ8 / 2)});
-  return out;
-}
-
 /// Walls with vertices here, with what of them is no geometry. Walls that are faces of voxels are as those of any mesh.
 TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, const LabelVolume& volume) {
   TriangleSoup soup;
@@ -124,8 +156,9 @@ TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, 
   soup.regions.labels.reserve(2 * walls.faces.size());
   const bool is_mirrored = spanned_world(volume) < 0;  // which turns faces around
   soup.regions.side.reserve(2 * walls.faces.size());
+  const std::array<uint8_t, 7> side_of_world = sides_of_world(volume);
   for (size_t f = 0; f < walls.faces.size(); ++f) {
-    const uint8_t side = walls.side_of(f);
+    const uint8_t side = side_of_world[walls.side_of(f)];
     each_triangle(walls.faces[f], fair, [&](const TriangleIndices& t) {
       soup.regions.side.push_back(side);
       soup.triangles.push_back(is_mirrored ? std::array{t.a, t.c, t.b} : std::array{t.a, t.b, t.c});
@@ -138,12 +171,27 @@ TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, 
   if (volume.smoothing_vox > 0) {
     soup.regions.are_of_voxels = true;
     soup.regions.voxel_size_world = voxel_size_world(volume);
+    soup.regions.period_world = period_world(volume);
   } else {
     soup.regions.side.clear();
   }
   soup.regions.names = volume.names;
   soup.faces_in_file = int64_t(walls.faces.size());
   return soup;
+}
+
+void repeat_first_layer(size_t axis, LabelVolume& volume) {
+  const std::array<int32_t, 3> size = volume.size_vox;
+  std::array<int64_t, 3> step{1, size[0], int64_t(size[0]) * size[1]};
+  const int64_t run = step[axis] * size[axis];  // labels from one first layer to the next one
+  std::vector<int32_t> labels;
+  labels.reserve(volume.labels.size() / size_t(size[axis]) * size_t(size[axis] + 1));
+  for (auto from = volume.labels.begin(); from != volume.labels.end(); from += run) {
+    labels.insert(labels.end(), from, from + run);
+    labels.insert(labels.end(), from, from + step[axis]);
+  }
+  volume.labels = std::move(labels);
+  ++volume.size_vox[axis];
 }
 
 TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell) {
@@ -153,6 +201,8 @@ TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const C
   AbsorbedIslands absorbed = absorb_islands(volume, context);
   tell_of(absorbed, volume, tell);
   tell_read(context, kIslandsAbsorbed);
+  for (size_t axis = 0; axis < 3; ++axis)
+    if (volume.is_periodic[axis]) repeat_first_layer(axis, volume);
   const WallCount count = count_walls(volume, context);
   check_memory(volume, bytes_to_make_walls(count.triangles(), count.vertices()), "the walls between its labels", name,
                context);
@@ -164,7 +214,7 @@ TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const C
         name + ": all its voxels are background, " + std::to_string(volume.background) + "; regions have other labels");
   tell_read(context, kWallsFound);
   TriangleSoup soup = soup_of(
-      walls, volume.smoothing_vox > 0 ? fair_walls(walls, volume.smoothing_vox, context) : at_rest(walls), volume);
+      walls, volume.smoothing_vox > 0 ? fair_walls(walls, volume.smoothing_vox, context) : walls.at_rest(), volume);
   soup.absorbed_walls = std::move(absorbed.lost_pairs);
   return soup;
 }
@@ -173,6 +223,7 @@ TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const C
 
 TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell) {
   check_volume(volume, name);
+  check_periodic(volume, name);
   tell_read(context, 0);
   TriangleSoup soup = run_with_threads(context, [&] { return soup_of_labels(std::move(volume), name, context, tell); });
   tell_read(context, 1);

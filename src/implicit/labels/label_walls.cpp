@@ -8,6 +8,7 @@
 
 #include "core/watched.h"
 #include "implicit/labels/label_rows.h"
+#include "implicit/labels/tied_sides.h"
 #include "implicit/labels/wall_corner.h"
 #include "isoshell/advanced/voxel_set.h"
 #include "isoshell/error.h"
@@ -89,11 +90,13 @@ class WallMaker {
     });
     number_vertices();
     LabelWalls walls;
-    walls.rest_halves.resize(first_vertex_.back());
+    walls.low_quarters = side_quarters(0);
+    walls.high_quarters = side_quarters(2);
+    walls.rest_quarters.resize(first_vertex_.back());
     walls.is_thin.assign(first_vertex_.back(), 0);
     std::vector<LabelWalls> layers(corners_.size());
     for_each_layer([&](size_t z) {
-      place_vertices(z, walls.rest_halves);
+      place_vertices(z, walls.rest_quarters);
       mark_thin(z, walls.is_thin);
       layers[z] = faces_of(int32_t(z));
     });
@@ -187,15 +190,26 @@ class WallMaker {
     for (size_t m = 0; m < middles_[z].size(); ++m) is_thin[next++] = 1;
   }
 
-  void place_vertices(size_t z, std::vector<Voxel>& rest_halves) const {
+  /// The outer half of a layer at a periodic side is beyond it, and the other one has all of its vertices.
+  int32_t quarters(int axis, int32_t halves) const {
+    const int32_t end = 2 * labels_.size(axis);
+    if (!labels_.is_periodic(axis)) return 2 * halves;
+    return std::clamp(2 * halves, halves + 2, halves + end - 2);
+  }
+  Voxel quarters(Voxel halves) const { return {quarters(0, halves.x), quarters(1, halves.y), quarters(2, halves.z)}; }
+  /// `halves` of voxels times the size of the volume.
+  Voxel side_quarters(int32_t halves) const {
+    return quarters(Voxel{halves * labels_.size(0), halves * labels_.size(1), halves * labels_.size(2)});
+  }
+  void place_vertices(size_t z, std::vector<Voxel>& rest_quarters) const {
     size_t next = first_vertex_[z];
     for (const UsedCorner& c : corners_[z].used) {
       const Voxel at = corner_at(c.place, z);
-      for (int s = 0; s < c.walls.sheets; ++s) rest_halves[next++] = {2 * at.x, 2 * at.y, 2 * at.z};
+      for (int s = 0; s < c.walls.sheets; ++s) rest_quarters[next++] = quarters({2 * at.x, 2 * at.y, 2 * at.z});
     }
     for (const Middle& m : middles_[z]) {
       const Voxel at = corner_at(m.place, z);
-      rest_halves[next++] = stepped({2 * at.x, 2 * at.y, 2 * at.z}, m.axis, 1);
+      rest_quarters[next++] = quarters(stepped({2 * at.x, 2 * at.y, 2 * at.z}, m.axis, 1));
     }
   }
 
@@ -301,14 +315,24 @@ class WallMaker {
 
 }  // namespace
 
+std::vector<PointQ8> LabelWalls::at_rest() const {
+  constexpr int32_t kQuarter = kOneVoxelQ8 / 4;
+  std::vector<PointQ8> out(rest_quarters.size());
+  for_each_index(size_t(0), out.size(), [&](size_t v) {
+    const Voxel& q = rest_quarters[v];
+    out[v] = {q.x * kQuarter, q.y * kQuarter, q.z * kQuarter};
+  });
+  return out;
+}
+
 uint8_t LabelWalls::side_of(size_t face) const {
   const auto are_all = [&](int32_t Voxel::*axis, int32_t at) {
     return std::all_of(faces[face].begin(), faces[face].end(),
-                       [&](uint32_t v) { return v == kNone || rest_halves[v].*axis == at; });
+                       [&](uint32_t v) { return v == kNone || rest_quarters[v].*axis == at; });
   };
   uint8_t side = 1;
   for (const auto axis : {&Voxel::x, &Voxel::y, &Voxel::z})
-    for (const int32_t at : {0, 2 * size_vox.*axis}) {
+    for (const int32_t at : {low_quarters.*axis, high_quarters.*axis}) {
       if (are_all(axis, at)) return side;
       ++side;
     }
@@ -317,7 +341,7 @@ uint8_t LabelWalls::side_of(size_t face) const {
 
 LabelWalls find_label_walls(const LabelVolume& volume, const Context& context) {
   LabelWalls walls = WallMaker(volume, context).make();
-  walls.size_vox = {volume.size_vox[0], volume.size_vox[1], volume.size_vox[2]};
+  tie_sides(volume.is_periodic, walls);
   return walls;
 }
 

@@ -67,7 +67,7 @@ Buckets<WallLink> find_links(const LabelWalls& walls, const Buckets<uint32_t>& f
 }  // namespace
 
 Buckets<uint32_t> faces_at_vertices(const LabelWalls& walls) {
-  return sort_into_buckets<uint32_t>(int64_t(walls.rest_halves.size()), int64_t(walls.faces.size()),
+  return sort_into_buckets<uint32_t>(int64_t(walls.rest_quarters.size()), int64_t(walls.faces.size()),
                                      [&](int64_t f, auto put) {
                                        for (const uint32_t v : walls.faces[size_t(f)])
                                          if (v != kNone) put(int64_t(v), uint32_t(f));
@@ -75,7 +75,7 @@ Buckets<uint32_t> faces_at_vertices(const LabelWalls& walls) {
 }
 
 WallLinks::WallLinks(const LabelWalls& walls, const Buckets<uint32_t>& faces_at)
-    : links_(find_links(walls, faces_at)), kind_(walls.rest_halves.size(), Kind::in_wall) {
+    : links_(find_links(walls, faces_at)), kind_(walls.rest_quarters.size(), Kind::in_wall) {
   for_each_index(size_t(0), kind_.size(), [&](size_t v) {
     const View<const WallLink> links = at(v);
     const auto along = std::count_if(links.begin(), links.end(), [](WallLink l) { return l.is_along_curve(); });

@@ -11,6 +11,7 @@
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/refine_mesh.h"
 #include "features/walls/coarsen_walls.h"
+#include "isoshell/error.h"
 #include "pipeline/defects/inverted_regions.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/patches/feature_report.h"
@@ -113,6 +114,10 @@ TriangleMesh triangulate_regions(const PreparedSurface& p, SeededMesh& made, con
   if (!is_relaxed) run.warn((is_made ? kCoarsened : "the walls of regions are as they came in: ") + walls.why_not);
   report.dual = walls.dual;
   report.optimize = walls.optimize;
+  if (!is_made && p.walls->regions.is_periodic())
+    throw Error(ErrorCode::usage, "regions",
+                "--periodic: opposite sides cannot get the same triangles, as " + walls.why_not +
+                    "; ask for another number of vertices");
   if (!is_made) {
     report.count.why = "the walls of its regions are as they came in";
     return walls_themselves(*p.walls);

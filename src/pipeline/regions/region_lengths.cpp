@@ -126,10 +126,13 @@ double LengthsOnWalls::asked_world(size_t triangle) const {
 LatticeFrame frame_of_walls(const TriangleSoup& walls, const Plan& plan, const std::vector<double>& of_face_world) {
   const WorldPoint &low = plan.box.min, &high = plan.box.max;
   const int32_t resolution = resolution_for_walls(walls, plan, of_face_world);
-  if (!walls.regions.are_of_voxels || !plan.chooses_grid()) return LatticeFrame::around(low, high, resolution);
+  const bool is_periodic = walls.regions.is_periodic();  // a translation by a period must be one on the lattice
+  if (!walls.regions.are_of_voxels || !(plan.chooses_grid() || is_periodic))
+    return LatticeFrame::around(low, high, resolution);
   const double step_world = walls.regions.voxel_size_world;
   const auto steps_along = [&](double side) { return std::max(std::ceil(side / step_world - 0.5 / kOneVoxelQ8), 1.); };
-  if (step_world <= 0 || steps_along(longest_side(plan.box)) > std::min(kMostFiner * resolution, kMaxResolution - 1))
+  const int32_t most = std::min(is_periodic ? kMaxResolution : kMostFiner * resolution, kMaxResolution - 1);
+  if (step_world <= 0 || steps_along(longest_side(plan.box)) > most)
     return LatticeFrame::around(low, high, std::min(kFiner * resolution, kMaxResolution));
   const auto steps = int32_t(steps_along(longest_side(plan.box)));
   const double parts_wanted = double(resolution - 1) / steps;  // the nearest number, or one that carries all lengths

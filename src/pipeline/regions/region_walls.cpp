@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/watched.h"
+#include "features/curves/tie_corners.h"
 #include "features/cutting/curve_seeds.h"
 #include "features/cutting/free_seeds.h"
 #include "features/mesh/thin_out.h"
@@ -38,6 +39,17 @@ void check_asked_for(const RemeshOptions& options) {
   if (options.want_shell) refuse("there is no shell to save");
 }
 
+/// Curves there stay the same on opposite sides.
+std::vector<uint32_t> vertices_at_periodic_sides(const FeatureMesh& mesh, const FaceRegions& regions) {
+  std::vector<uint32_t> found;
+  for (size_t t = 0; t < mesh.triangles.size() && regions.is_periodic(); ++t)
+    if (regions.is_periodic_side(regions.side[mesh.source_face[t]]))
+      found.insert(found.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
 /// With fewer triangles, where voxels made far more than edges need that are as long everywhere: what follows takes
 /// time and memory for each.
 FeatureMesh walls_of(const TriangleSoup& soup, const PreparedSurface& p, bool lengths_vary, const Context& context) {
@@ -46,8 +58,9 @@ FeatureMesh walls_of(const TriangleSoup& soup, const PreparedSurface& p, bool le
   if (lengths_vary || !are_thinned_out(soup, p.target.vertices)) return mesh;
   const double edge_world = edge_length_for(mesh, {}, p.target.vertices);
   const auto fewest = uint32_t(kSmallPatch * vertices / p.target.vertices);
-  const EdgeList creases = side_creases(mesh, soup.regions.side, edge_world);
-  return thin_out(std::move(mesh), creases, p.surface.frame, edge_world, fewest, context);
+  const EdgeList creases = side_creases(mesh, soup.regions, edge_world);
+  const std::vector<uint32_t> stay = vertices_at_periodic_sides(mesh, soup.regions);
+  return thin_out(std::move(mesh), {creases, stay}, p.surface.frame, edge_world, fewest, context);
 }
 
 std::map<int32_t, uint64_t> spanned_volumes(const TriangleSoup& soup, const LatticeFrame& frame) {
@@ -70,8 +83,9 @@ std::map<int32_t, uint64_t> spanned_volumes(const TriangleSoup& soup, const Latt
 CurveOptions curves_between_regions(const PreparedSurface& p) {
   CurveOptions curves = curve_options(p.options, nullptr, p.target.edge_length_world);
   if (!p.walls->regions.are_of_voxels || curves.mode != CreaseMode::automatic) return curves;
-  curves.creases = side_creases(p.walls->mesh, p.walls->regions.side, curves.edge_length_world);
+  curves.creases = side_creases(p.walls->mesh, p.walls->regions, curves.edge_length_world);
   curves.mode = curves.creases.empty() ? CreaseMode::off : CreaseMode::given;
+  if (p.walls->regions.is_periodic()) curves.lines = curves.creases;  // however short they are
   return curves;
 }
 
@@ -83,6 +97,7 @@ SharedCut cut_walls(const PreparedSurface& p, const CurveNetwork& network, const
   how.requested = requested_lengths(p, wants_lengths(p.options), how.edge_length_world);
   how.requested.of_face_world = of_face_world;
   how.is_rough = p.walls->regions.are_of_voxels;
+  how.period_world = p.walls->regions.period_world;
   for (std::string& text : warnings_of_bounds(how.requested)) run.warn(std::move(text));
   if (!p.options.edge_length_world && !(how.requested.vary() && field_decides(p.options)))
     how.vertices = p.target.vertices;
@@ -118,8 +133,9 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     if (soup.regions.are_of_voxels)
       walls->spanned_volume_q8 = run_with_threads(context, [&] { return spanned_volumes(soup, p.surface.frame); });
     p.walls = walls;
-    const CurveNetwork network =
+    CurveNetwork network =
         run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p)); });
+    if (soup.regions.is_periodic()) tie_corners(p.walls->mesh, soup.regions.period_world, network);
     report_found(p.walls->mesh, network, false, p.report.features);
     const SharedCut cut = cut_walls(p, network, of_face_world, run);
     if (cut->is_requested && field_decides(p.options)) {

@@ -2,6 +2,7 @@
 #include "pipeline/regions/restore_volumes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -27,7 +28,8 @@ constexpr double kStaying = 0.01;
 constexpr double kFarthestOfEdge = 1. / 4;
 constexpr double kMostOffset_q8 = 1 << 20;  ///< where walls cannot go far enough, pressures grow without bounds
 constexpr uint8_t kAllAxes = 7;
-constexpr int kMostRounds = 16;  ///< in which vertices go back
+constexpr int32_t kFar = 1 << 30;  ///< beyond the lattice
+constexpr int kMostRounds = 16;    ///< in which vertices go back
 
 class WallOffsets {
  public:
@@ -111,19 +113,27 @@ class WallOffsets {
   /// the others alone. Patches lie there in part where creases were too small to cut them.
   void keep_sides(const CutSurface& cut, const RegionWalls& walls) {
     const std::vector<uint8_t>& side = walls.regions.side;
+    std::vector<uint8_t> stays(pair_of_patch_.size(), 0);  // of a patch at a periodic side, as those opposite, that
     std::vector<WorldBox> boxes(pair_of_patch_.size(), box_of_none());
     is_side_.resize(boxes.size(), side.empty() ? 0 : 1);
     for (size_t t = 0; t < cut.fine->triangles.size() && !side.empty(); ++t) {
       const uint32_t patch = cut.surface.patch[cut.corner[3 * t]];
-      if (side[cut.fine->source_face[t]] == 0) is_side_[patch] = 0;
+      const uint8_t of = side[cut.fine->source_face[t]];
+      if (of == 0) is_side_[patch] = 0;
+      if (walls.regions.is_periodic_side(of)) stays[patch] = of;
       for (const uint32_t v : cut.fine->triangles[t]) stretch(boxes[patch], cut.fine->position[v]);
     }
     for (int64_t t = 0; t < triangles_.size; ++t) {
       if (!is_side(t)) continue;
       const PointQ8 low = rounded(boxes[patch_[size_t(t)]].min), high = rounded(boxes[patch_[size_t(t)]].max);
+      const uint8_t of = stays[patch_[size_t(t)]];
+      if (of > 0) {
+        const size_t axis = size_t(of - 1) / 2;
+        (of % 2 == 1 ? period_min_ : period_max_)[axis] = std::array{low.x, low.y, low.z}[axis];
+      }
       const bool is_oblique = low.x != high.x && low.y != high.y && low.z != high.z;
       for (const uint32_t v : corners(t)) {
-        if (is_oblique) may_move_[v] = 0;
+        if (is_oblique || of > 0) may_move_[v] = 0;
         if (low.x == high.x) at_[v].x = low.x, may_move_[v] &= uint8_t(~1);
         if (low.y == high.y) at_[v].y = low.y, may_move_[v] &= uint8_t(~2);
         if (low.z == high.z) at_[v].z = low.z, may_move_[v] &= uint8_t(~4);
@@ -179,7 +189,9 @@ class WallOffsets {
     if (area == 0) return at_[v];
     const auto along = [&](int axis, int32_t at, int32_t from, double by) {
       if ((may_move_[v] >> axis & 1) == 0) return at;
-      return std::clamp(at + int32_t(std::floor(by / area + 0.5)), from - farthest_q8_[v], from + farthest_q8_[v]);
+      const int32_t less = std::min(farthest_q8_[v], (from - period_min_[size_t(axis)]) / 2),
+                    more = std::min(farthest_q8_[v], (period_max_[size_t(axis)] - from) / 2);
+      return std::clamp(at + int32_t(std::floor(by / area + 0.5)), from - less, from + more);
     };
     const PointQ8 &p = at_[v], &from = before_[v];
     return {along(0, p.x, from.x, way.x), along(1, p.y, from.y, way.y), along(2, p.z, from.z, way.z)};
@@ -203,7 +215,8 @@ class WallOffsets {
   std::vector<uint64_t> wanted_;      ///< per region six times its volume, modulo 2^64
   std::vector<WallsBetween> pairs_;
   std::vector<uint32_t> pair_of_patch_;
-  std::vector<uint8_t> is_side_;  ///< per patch
+  std::vector<uint8_t> is_side_;                                                           ///< per patch
+  std::array<int32_t, 3> period_min_{-kFar, -kFar, -kFar}, period_max_{kFar, kFar, kFar};  ///< that all stay within
 };
 
 }  // namespace

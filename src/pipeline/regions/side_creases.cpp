@@ -23,9 +23,9 @@ double width_of(double area, double border) {
 /// The parts of sides: triangles of one side that share edges.
 class SideParts {
  public:
-  SideParts(const FeatureMesh& walls, const std::vector<uint8_t>& side) : walls_(walls) {
+  SideParts(const FeatureMesh& walls, const FaceRegions& regions) : walls_(walls), regions_(regions) {
     for (size_t t = 0; t < walls.triangles.size(); ++t) {
-      const uint8_t of = side[walls.source_face[t]];
+      const uint8_t of = regions.side[walls.source_face[t]];
       if (of == 0) continue;
       triangles_.push_back(walls.triangles[t]);
       side_.push_back(of);
@@ -45,7 +45,8 @@ class SideParts {
     EdgeList found;
     for_each_crease([&](uint32_t a, uint32_t b, View<const EdgeSide> sides) {
       const bool is_wide = std::any_of(sides.begin(), sides.end(), [&](const EdgeSide& of) {
-        return width_of(area_[part_of(of)], border[part_of(of)]) >= narrowest_world;
+        return regions_.is_periodic_side(side_[of.half_edge / 3]) ||
+               width_of(area_[part_of(of)], border[part_of(of)]) >= narrowest_world;
       });
       if (is_wide) found.push_back({a, b});
     });
@@ -79,6 +80,7 @@ class SideParts {
   }
 
   const FeatureMesh& walls_;
+  const FaceRegions& regions_;
   std::vector<std::array<uint32_t, 3>> triangles_;  ///< those at sides
   std::vector<uint8_t> side_;                       ///< per triangle of these
   std::vector<double> area_;
@@ -88,9 +90,9 @@ class SideParts {
 
 }  // namespace
 
-EdgeList side_creases(const FeatureMesh& walls, const std::vector<uint8_t>& side, double edge_length_world) {
-  if (side.empty()) return {};
-  return SideParts(walls, side).creases(kNarrow * edge_length_world);
+EdgeList side_creases(const FeatureMesh& walls, const FaceRegions& regions, double edge_length_world) {
+  if (regions.side.empty()) return {};
+  return SideParts(walls, regions).creases(kNarrow * edge_length_world);
 }
 
 }  // namespace isoshell

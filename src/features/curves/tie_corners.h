@@ -1,0 +1,12 @@
+// Corners of curves at opposite sides of a periodic volume.
+#pragma once
+
+#include "features/mesh/feature_mesh.h"
+
+namespace isoshell {
+
+/// Where a curve at one side has a corner, the one opposite has one, too. `period_world`: as in FaceRegions. Cost: a
+/// sort of the vertices of curves.
+void tie_corners(const FeatureMesh& mesh, const WorldPoint& period_world, CurveNetwork& network);
+
+}  // namespace isoshell
