@@ -33,6 +33,7 @@ SPECIAL = {
     "require": "Union[str, Sequence[str]]",
     "max-memory": "Union[int, str]",
     "regions": "str",
+    "periodic": "str",
     "device": "str",
     "input-format": "str",
     "output-format": "str",

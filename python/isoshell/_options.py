@@ -127,7 +127,7 @@ class Options(TypedDict, total=False):
     background: Optional[int]
     smallest_island: Optional[int]
     smoothing: Optional[float]
-    periodic: Optional[int]
+    periodic: Optional[str]
     input_format: Optional[str]
     output_format: Optional[str]
     save_shell: Optional[Path]

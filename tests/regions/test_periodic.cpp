@@ -61,9 +61,12 @@ std::set<std::set<Place>> triangles_in_plane(const TriangleMesh& mesh, int axis,
   return found;
 }
 
-void check_periodic(const LabelVolume& volume, int64_t vertices) {
+void check_periodic(const LabelVolume& volume, int64_t vertices, Features::Creases creases = {}) {
   TestContext context;
-  const TriangleMesh mesh = meshed(volume, vertices, context).mesh;
+  RemeshOptions options;
+  options.vertices = vertices;
+  options.features.creases = creases;
+  const TriangleMesh mesh = remesh(surface_of_labels(volume, "labels", 0), options, context).mesh;
   INFO(vertices << " vertices, " << mesh.vertices.size() << " made");
   CHECK(int64_t(mesh.vertices.size()) == vertices);
   CHECK(fault_of_regions(mesh.triangles, mesh.regions) == "");
@@ -74,8 +77,7 @@ void check_periodic(const LabelVolume& volume, int64_t vertices) {
     const auto [first, last] =
         std::minmax_element(mesh.vertices.begin(), mesh.vertices.end(),
                             [&](const WorldPoint& p, const WorldPoint& q) { return along(p) < along(q); });
-    CHECK(std::abs(along(*first)) < 1e-9);
-    CHECK(std::abs(along(*last) - volume.size_vox[0]) < 1e-9);
+    CHECK(std::abs(along(*last) - along(*first) - volume.size_vox[0]) < 1e-9);
     const auto low = triangles_in_plane(mesh, axis, along(*first)), high = triangles_in_plane(mesh, axis, along(*last));
     CHECK(!low.empty());
     CHECK(low == high);
@@ -94,11 +96,36 @@ TEST_CASE("opposite sides of a periodic volume have the same triangles, and regi
   SECTION("along all axes") { check_periodic(periodic_grains(32, 14, 0, {true, true, true}), 4000); }
   SECTION("along two, with few vertices") { check_periodic(periodic_grains(24, 9, 0, {true, false, true}), 800); }
   SECTION("with voids") { check_periodic(periodic_grains(24, 12, 4, {true, true, true}), 2500); }
+  SECTION("with axes that are mirrored and exchanged, and no creases") {
+    LabelVolume volume = periodic_grains(20, 8, 2, {true, true, false});
+    volume.step_world = {WorldPoint{0, -1, 0}, WorldPoint{1, 0, 0}, WorldPoint{0, 0, 1}};
+    check_periodic(volume, 1500, Features::Creases::off);
+  }
   SECTION("of one region") {
     LabelVolume one = label_volume(12, 12, 12, [](int, int, int) { return 3; });
     one.is_periodic = {true, true, false};
     check_periodic(one, 700);
   }
+}
+
+TEST_CASE("an island that a side cuts apart is one") {
+  LabelVolume volume = label_volume(12, 6, 6, [](int x, int y, int z) {
+    return (x < 1 || x > 10) && std::min(y, z) > 1 && std::max(y, z) < 4 ? 2 : x == 6 && y == 3 && z > 1 ? 2 : 1;
+  });
+  volume.smallest_island_vox = 8;
+  const auto has_ends = [&] {
+    const TriangleSoup walls = surface_of_labels(volume, "labels", 0);
+    int ends = 0;
+    for (const bool is_first : {true, false})
+      ends += std::any_of(walls.vertices.begin(), walls.vertices.end(), [&](const WorldPoint& p) {
+        const bool is_inside = p.y > .6 && p.y < 4.4 && p.z > .6 && p.z < 4.4;
+        return is_inside && (is_first ? p.x > .2 && p.x < .8 : p.x > 10.2 && p.x < 10.8);
+      });
+    return ends;
+  };
+  CHECK(has_ends() == 1);  // the other one has as many voxels
+  volume.is_periodic = {true, false, false};
+  CHECK(has_ends() == 2);
 }
 
 TEST_CASE("a periodic volume has the same mesh with any number of threads") {

@@ -2,36 +2,40 @@
 #include "features/curves/tie_corners.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <set>
-#include <utility>
 
 namespace isoshell {
 namespace {
 
-constexpr double WorldPoint::*kAxes[3] = {&WorldPoint::x, &WorldPoint::y, &WorldPoint::z};
-constexpr double kRounding = 1e-9;  ///< of a period
+using Place = std::array<int32_t, 3>;
 
-/// Vertices of curves at the ends of a period that are opposite to each other: coordinates along the sides are the
-/// same.
-std::vector<std::array<uint32_t, 2>> opposite_vertices(const FeatureMesh& mesh, const CurveNetwork& network,
-                                                       size_t axis, double period) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const WorldPoint& p : mesh.vertices) low = std::min(low, p.*kAxes[axis]), high = std::max(high, p.*kAxes[axis]);
-  if (std::abs(high - low - period) > kRounding * period) return {};
-  std::map<std::pair<double, double>, std::array<std::set<uint32_t>, 2>> at;
+Place place_of(const LatticeFrame& frame, const WorldPoint& world) {
+  const PointQ8 p = frame.snap(world);
+  return {p.x, p.y, p.z};
+}
+
+/// Vertices of curves at the two ends of a period that lie opposite to each other.
+std::vector<std::array<uint32_t, 2>> opposite_vertices(const std::vector<Place>& place, const CurveNetwork& network,
+                                                       size_t axis, int32_t period) {
+  const auto less = [&](const Place& p, const Place& q) { return p[axis] < q[axis]; };
+  const int32_t low = (*std::min_element(place.begin(), place.end(), less))[axis],
+                high = (*std::max_element(place.begin(), place.end(), less))[axis];
+  if (high - low != period) return {};
+  std::map<Place, std::array<std::set<uint32_t>, 2>> at;
   for (const FeatureCurve& curve : network.curves)
     for (const uint32_t v : curve.vertex) {
-      const WorldPoint& p = mesh.vertices[v];
-      const double along = p.*kAxes[axis];
-      if (along == low || along == high)
-        at[{p.*kAxes[(axis + 1) % 3], p.*kAxes[(axis + 2) % 3]}][along == high].insert(v);
+      const bool is_high = place[v][axis] == high;
+      if (!is_high && place[v][axis] != low) continue;
+      Place along = place[v];
+      along[axis] = 0;
+      at[along][is_high].insert(v);
     }
   std::vector<std::array<uint32_t, 2>> pairs;
-  for (const auto& [place, ends] : at)
+  for (const auto& [along, ends] : at)
     for (const uint32_t u : ends[0])
       for (const uint32_t v : ends[1]) pairs.push_back({u, v});
   return pairs;
@@ -55,11 +59,17 @@ void append_split(const FeatureCurve& curve, const std::set<uint32_t>& corners, 
 
 }  // namespace
 
-void tie_corners(const FeatureMesh& mesh, const WorldPoint& period_world, CurveNetwork& network) {
+void tie_corners(const FeatureMesh& mesh, const LatticeFrame& frame, const WorldPoint& period_world,
+                 CurveNetwork& network) {
+  std::vector<Place> place;
+  for (const WorldPoint& p : mesh.vertices) place.push_back(place_of(frame, p));
+  const std::array<double, 3> period{period_world.x, period_world.y, period_world.z};
   std::vector<std::array<uint32_t, 2>> pairs;
-  for (size_t axis = 0; axis < 3; ++axis)
-    if (const double period = period_world.*kAxes[axis]; period != 0)
-      for (const auto& pair : opposite_vertices(mesh, network, axis, period)) pairs.push_back(pair);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (period[axis] == 0) continue;
+    const auto period_q8 = int32_t(std::lround(period[axis] / frame.voxel_size * kOneVoxelQ8));
+    for (const auto& pair : opposite_vertices(place, network, axis, period_q8)) pairs.push_back(pair);
+  }
   std::set<uint32_t> corners(network.corners.begin(), network.corners.end());
   for (size_t before = 0; before != corners.size();) {
     before = corners.size();

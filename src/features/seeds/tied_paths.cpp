@@ -2,6 +2,8 @@
 #include "features/seeds/tied_paths.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <unordered_map>
@@ -16,9 +18,9 @@ namespace {
 constexpr double kRounding_q8 = 1. / 64;  ///< of positions that are not on the lattice yet
 constexpr double WorldPoint::*kAxes[3] = {&WorldPoint::x, &WorldPoint::y, &WorldPoint::z};
 
-/// Where it is on a side.
+/// Where it is on a side, in steps of the rounding.
 std::array<int64_t, 2> place_on_side(const WorldPoint& p, size_t axis) {
-  const auto whole = [](double at) { return std::llround(at / kRounding_q8 / 2); };
+  const auto whole = [](double at) { return std::llround(at / kRounding_q8); };
   return {whole(p.*kAxes[(axis + 1) % 3]), whole(p.*kAxes[(axis + 2) % 3])};
 }
 
@@ -63,8 +65,8 @@ class SeedsOfSides {
       const bool is_reversed = from.vertex[low.edge] != begin;
       if (is_seed(from, is_reversed ? low.edge + 1 : low.edge)) seeds.push_back({i, 0});
       std::vector<double> parts;
-      for (const PathPoint& seed : from.seeds)
-        if (seed.edge == low.edge && seed.part > 0) parts.push_back(is_reversed ? 1 - seed.part : seed.part);
+      for (auto seed = first_on(from, low.edge); seed != from.seeds.end() && seed->edge == low.edge; ++seed)
+        if (seed->part > 0) parts.push_back(is_reversed ? 1 - seed->part : seed->part);
       std::sort(parts.begin(), parts.end());
       for (const double part : parts) seeds.push_back({i, part});
     }
@@ -74,8 +76,12 @@ class SeedsOfSides {
   static bool is_seed(const CurvePath& path, size_t at) {
     if (path.is_loop && at == path.vertex.size()) at = 0;
     if (!path.is_loop && (at == 0 || at + 1 == path.vertex.size())) return true;
-    return std::any_of(path.seeds.begin(), path.seeds.end(),
-                       [&](const PathPoint& seed) { return seed.edge == at && seed.part == 0; });
+    const auto seed = first_on(path, at);
+    return seed != path.seeds.end() && seed->edge == at && seed->part == 0;
+  }
+  static std::vector<PathPoint>::const_iterator first_on(const CurvePath& path, size_t edge) {
+    return std::lower_bound(path.seeds.begin(), path.seeds.end(), edge,
+                            [](const PathPoint& seed, size_t of) { return seed.edge < of; });
   }
 
   FineMesh& mesh_;
@@ -103,8 +109,13 @@ TiedPaths::TiedPaths(const FineMesh& mesh, const WorldPoint& period_q8) {
     };
     for_each_at(low, [&](uint32_t v) { first[place_on_side(mesh.position[v], axis)] = v; });
     for_each_at(high, [&](uint32_t v) {
-      const auto found = first.find(place_on_side(mesh.position[v], axis));
-      if (found != first.end()) pairs.push_back({found->second, v});
+      const auto [a, b] = place_on_side(mesh.position[v], axis);
+      for (int64_t i = 0; i < 9; ++i) {
+        const auto found = first.find({a + i % 3 - 1, b + i / 3 - 1});
+        if (found == first.end()) continue;
+        pairs.push_back({found->second, v});
+        break;
+      }
     });
   }
 }

@@ -1,6 +1,7 @@
 // Paths at opposite sides of a periodic volume get the same seeds.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "features/mesh/refine_mesh.h"

@@ -35,7 +35,7 @@ class SideCopier : public PeriodicMesh {
     std::ostringstream text;
     text << "--periodic: a vertex at " << p.x << ", " << p.y << ", " << p.z
          << " has none on the opposite side, where triangles would intersect; ask for another number of vertices";
-    throw Error(ErrorCode::usage, "regions", text.str());
+    throw NoRoom("regions", text.str());
   }
 
   /// Gives the high side of an axis the triangles of the low one.
@@ -102,7 +102,7 @@ class SideCopier : public PeriodicMesh {
     const uint32_t a = cut_.place[vertex(u).home], b = cut_.place[vertex(v).home];
     for (uint32_t c = 0; c < cut_.curves.size(); ++c) {
       const CutCurve& curve = cut_.curves[c];
-      if (curve.is_loop) continue;
+      if (curve.is_loop || is_alive(c)) continue;
       const uint32_t first = curve.place.front(), last = curve.place.back();
       if ((first == a && last == b) || (first == b && last == a)) return c;
     }

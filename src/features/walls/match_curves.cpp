@@ -1,7 +1,6 @@
 // with_matched_curves (see periodic_mesh.h).
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "features/walls/periodic_mesh.h"
@@ -11,7 +10,9 @@ namespace {
 
 using Kind = RegionVertex::Kind;
 
-constexpr int kMostRounds = 4;  ///< a vertex that one side gets is a new one for the other
+constexpr int kMostRounds = 4;  ///< in which vertices that one side could not lose are given to the other one
+
+constexpr double kOffPlane = .125;  ///< of an edge: how far a vertex gets that leaves a plane
 
 class CurveMatcher : public PeriodicMesh {
  public:
@@ -46,9 +47,22 @@ class CurveMatcher : public PeriodicMesh {
 
   /// Beside what is no region walls may have triangles that lie in a side, which would be there on one of two sides.
   void leave_planes() {
-    for (uint32_t t = 0; t < triangles().size(); ++t)
+    for (uint32_t t = 0; t < triangles().size(); ++t) {
       for (size_t edge = 0; edge < 3 && lies_in_plane(triangles()[t]); ++edge)
         flip(t, edge, change_, [] { return true; });
+      for (size_t edge = 0; edge < 3 && lies_in_plane(triangles()[t]); ++edge) split_off_plane(t, edge);
+    }
+  }
+  void split_off_plane(uint32_t t, size_t edge) {
+    const RegionTriangle of = triangles()[t];
+    const uint32_t u = of.corner[edge], v = of.corner[(edge + 1) % 3];
+    const uint32_t home = lookup_.copy_in(vertex(u).home, of.patch);
+    if (of.curve[edge] != kNone || home == kNone) return;
+    RegionVertex middle = vertex(u);
+    middle.kind = Kind::free;
+    middle.position = sides().inside(.5 * (at(u) + at(v)), kOffPlane * length(at(v) - at(u)));
+    middle.home = lookup_.nearest_from(home, middle.position);
+    split(u, v, middle, change_, [] { return true; });
   }
   bool lies_in_plane(const RegionTriangle& t) const {
     if (t.is_gone() || sides().of_patch(t.patch) > 0) return false;
@@ -96,24 +110,23 @@ class CurveMatcher : public PeriodicMesh {
     const double way = std::abs(on.at_q8[a] - on.at_q8[b]);
     return on.is_loop ? std::min(way, on.length_q8 - way) : way;
   }
-  static size_t nearest_of(const std::vector<OnCurve>& list, const OnCurve& to,
-                           const std::function<double(size_t, size_t)>& distance) {
-    size_t best = list.size();
-    for (size_t i = 0; i < list.size(); ++i)
-      if (best == list.size() || distance(list[i].at, to.at) < distance(list[best].at, to.at)) best = i;
-    return best;
+  /// Of a list in order of places; its size where that is empty.
+  size_t nearest_of(const std::vector<OnCurve>& list, uint32_t curve, size_t to) const {
+    if (list.empty()) return 0;
+    const auto next = size_t(std::lower_bound(list.begin(), list.end(), OnCurve{to, 0, {}}) - list.begin());
+    const size_t after = next % list.size(), before = (next + list.size() - 1) % list.size();
+    return way(curve, list[before].at, to) <= way(curve, list[after].at, to) ? before : after;
   }
 
   /// Vertices that are each other's nearest become a pair. The others are put into the curve, or taken from it.
   bool match_curve(uint32_t c, const std::vector<OnCurve>& wanted, const WorldPoint& period, int low_side) {
     const std::vector<OnCurve> there = on_curve(c);
-    const auto distance = [&](size_t a, size_t b) { return way(c, a, b); };
     std::vector<char> is_paired(there.size(), 0);
     std::vector<OnCurve> missing;
     bool has_changed = false;
     for (size_t w = 0; w < wanted.size(); ++w) {
-      const size_t h = nearest_of(there, wanted[w], distance);
-      if (h == there.size() || nearest_of(wanted, there[h], distance) != w) {
+      const size_t h = nearest_of(there, c, wanted[w].at);
+      if (h == there.size() || nearest_of(wanted, c, there[h].at) != w) {
         missing.push_back(wanted[w]);
         continue;
       }
@@ -135,13 +148,22 @@ class CurveMatcher : public PeriodicMesh {
     for (const uint32_t t : around(v)) normals.push_back(normal(triangles()[t]));
     RegionVertex to = lookup_.on_curve_at(there.curve, there.at);
     to.position = position;
-    return move(v, to, change_, [&] {
+    const bool has_moved = move(v, to, change_, [&] {
       for (size_t i = 0; i < change_.made.size(); ++i)
         if (dot(normal(change_.made[i]), normals[i]) <= 0) return false;
       return true;
     });
+    if (!has_moved) return false;
+    note_taken_away(there.curve, v);
+    note_put_in(there.curve, {there.at, v, position});
+    return true;
   }
   bool take_away(uint32_t v) {
+    const bool is_gone = collapse_along_curve(v);
+    if (is_gone) note_taken_away(vertex(v).curve, v);
+    return is_gone;
+  }
+  bool collapse_along_curve(uint32_t v) {
     std::vector<uint32_t> into;
     list_targets(v, into);
     std::sort(into.begin(), into.end(), [&](uint32_t a, uint32_t b) {
@@ -169,16 +191,17 @@ class CurveMatcher : public PeriodicMesh {
   /// Splits the edge of a curve that passes a place.
   bool put_in(const PlaceOnCurve& place, const WorldPoint& position) {
     if (is_end(place.curve, place.at)) return false;
-    list_vertices();
     const auto [u, v] = beside(place);
     if (u == kNone || v == kNone || curve_between(u, v).value_or(kNone) != place.curve) return false;
     RegionVertex middle = lookup_.on_curve_at(place.curve, place.at);
     middle.position = position;
-    return split(u, v, middle, change_, [&] {
+    const bool is_split = split(u, v, middle, change_, [&] {
       for (size_t i = 0; i < change_.made.size(); ++i)
         if (!faces_as_made(change_.made[i], change_.replaced[i / 2])) return false;
       return true;
     });
+    if (is_split) note_put_in(place.curve, {place.at, uint32_t(vertices().size() - 1), position});
+    return is_split;
   }
   /// The vertices before and behind a place.
   std::pair<uint32_t, uint32_t> beside(const PlaceOnCurve& place) const {

@@ -45,6 +45,16 @@ uint32_t PeriodicMesh::corner_at(uint32_t place) const {
   return found != at_corner_.end() ? found->second : kNone;
 }
 
+void PeriodicMesh::note_put_in(uint32_t curve, const OnCurve& v) {
+  std::vector<OnCurve>& list = on_curve_[curve];
+  list.insert(std::lower_bound(list.begin(), list.end(), v), v);
+}
+
+void PeriodicMesh::note_taken_away(uint32_t curve, uint32_t v) {
+  std::vector<OnCurve>& list = on_curve_[curve];
+  list.erase(std::find_if(list.begin(), list.end(), [&](const OnCurve& on) { return on.vertex == v; }));
+}
+
 bool has_periodic_sides(const CutSurface& cut) { return cut.regions && cut.regions->is_periodic(); }
 
 EditableMesh with_same_sides(const CutLookup& lookup, EditableMesh mesh) {

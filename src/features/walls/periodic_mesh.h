@@ -40,6 +40,8 @@ class PeriodicMesh : public EditableMesh {
   /// The vertices inside of each curve, in their order, and those at corners by their place.
   void list_vertices();
   const std::vector<OnCurve>& on_curve(uint32_t curve) const { return on_curve_[curve]; }
+  void note_put_in(uint32_t curve, const OnCurve& v);
+  void note_taken_away(uint32_t curve, uint32_t v);
   /// kNone where there is none.
   uint32_t corner_at(uint32_t place) const;
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "features/mesh/refine_mesh.h"
-#include "isoshell/advanced/voxel_set.h"
 #include "voxel/random.h"
 
 namespace isoshell {
@@ -47,6 +46,17 @@ WorldPoint PeriodicSides::within(WorldPoint p) const {
     const auto &low = plane_q8_[2 * axis + 1], &high = plane_q8_[2 * axis + 2];
     if (low && at < *low) at = *low + 1;
     if (high && at > *high) at = *high - 1;
+  }
+  return p;
+}
+
+WorldPoint PeriodicSides::inside(WorldPoint p, double way_q8) const {
+  for (size_t axis = 0; axis < 3; ++axis) {
+    double& at = axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+    const auto &low = plane_q8_[2 * axis + 1], &high = plane_q8_[2 * axis + 2];
+    at = std::floor(at);
+    const bool is_low = low && at == *low, is_high = high && at == *high;
+    at += is_low ? std::ceil(way_q8) : is_high ? -std::ceil(way_q8) : 0;
   }
   return p;
 }

@@ -18,7 +18,6 @@ class PeriodicSides {
 
   /// Of a patch; 0: it is on none.
   int of_patch(uint32_t patch) const { return of_patch_[patch]; }
-  bool is_low(uint32_t patch) const { return of_patch_[patch] % 2 == 1; }
   bool is_high(uint32_t patch) const { return of_patch_[patch] > 0 && of_patch_[patch] % 2 == 0; }
   /// Whether a side is there.
   bool has(int side) const { return plane_q8_[size_t(side)].has_value(); }
@@ -26,6 +25,8 @@ class PeriodicSides {
   WorldPoint on_plane(int side, WorldPoint p) const;
   /// A point, or for one beyond a plane the nearest one before it.
   WorldPoint within(WorldPoint p) const;
+  /// A point in planes, so far from them.
+  WorldPoint inside(WorldPoint p, double way_q8) const;
   /// From the low side of an axis to its high one.
   WorldPoint period_q8(int axis) const;
 

@@ -97,7 +97,16 @@ class Islands {
       for (size_t r = first_[size_t(row)] + 1; r < first_[size_t(row) + 1]; ++r) visit(r - 1, r);
       if (row % size(1) > 0) each_overlapping(row - 1, row, visit);
       if (row >= size(1)) each_overlapping(row - size(1), row, visit);
+      each_touching_around(row, visit);
     }
+  }
+  /// Across the end of a periodic volume.
+  template <class Visit>
+  void each_touching_around(int64_t row, Visit visit) const {
+    const int64_t from_y = size(1) - 1, from_z = int64_t(size(1)) * (size(2) - 1);
+    if (volume_.is_periodic[0]) visit(first_[size_t(row)], first_[size_t(row) + 1] - 1);
+    if (volume_.is_periodic[1] && row % size(1) == from_y) each_overlapping(row - from_y, row, visit);
+    if (volume_.is_periodic[2] && row >= from_z) each_overlapping(row - from_z, row, visit);
   }
   template <class Visit>
   void each_overlapping(int64_t row, int64_t other, Visit visit) const {
@@ -113,8 +122,10 @@ class Islands {
   /// Faces of a run at the sides of the array.
   int64_t faces_outside(size_t r) const {
     const int64_t row = row_of(r), y = row % size(1), z = row / size(1), length = runs_[r].end - runs_[r].begin;
-    return length * ((y == 0) + (y + 1 == size(1)) + (z == 0) + (z + 1 == size(2))) + (runs_[r].begin == 0) +
-           (runs_[r].end == size(0));
+    const auto& is_periodic = volume_.is_periodic;
+    return (is_periodic[0] ? 0 : (runs_[r].begin == 0) + (runs_[r].end == size(0))) +
+           (is_periodic[1] ? 0 : length * ((y == 0) + (y + 1 == size(1)))) +
+           (is_periodic[2] ? 0 : length * ((z == 0) + (z + 1 == size(2))));
   }
 
   size_t root(size_t r) {

@@ -77,7 +77,7 @@ ElasticNet::Box ElasticNet::box_of(size_t vertex, double farthest_vox, const Buc
 }
 
 /// Where a volume ends what it shows goes on: it is cut there, and the cut is flat. Other vertices keep off
-/// it, where half of a voxel is all that is between.
+/// periodic sides, half of a voxel from which the next ones are.
 void ElasticNet::keep_on_sides(size_t vertex, Box& box) const {
   const auto fine = [](const Voxel& quarters) {
     return FinePoint{rest_of(quarters.x), rest_of(quarters.y), rest_of(quarters.z), 0};

@@ -1,6 +1,7 @@
 // surface_of_labels (see isoshell/io/memory_input.h).
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -100,9 +101,12 @@ size_t world_axis(const LabelVolume& volume, size_t axis) {
 /// Of a periodic volume, whose axes are those of the world, its sides by these.
 std::array<uint8_t, 7> sides_of_world(const LabelVolume& volume) {
   std::array<uint8_t, 7> sides{0};
-  for (size_t axis = 0; axis < 3; ++axis)
-    for (size_t end = 1; end < 3; ++end)
-      sides[2 * axis + end] = uint8_t(2 * (is_periodic(volume) ? world_axis(volume, axis) : axis) + end);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const size_t world = is_periodic(volume) ? world_axis(volume, axis) : axis;
+    const WorldPoint& step = volume.step_world[axis];
+    const bool is_reversed = is_periodic(volume) && std::array{step.x, step.y, step.z}[world] < 0;
+    for (size_t end = 1; end < 3; ++end) sides[2 * axis + end] = uint8_t(2 * world + (is_reversed ? 3 - end : end));
+  }
   return sides;
 }
 WorldPoint period_world(const LabelVolume& volume) {
@@ -113,14 +117,17 @@ WorldPoint period_world(const LabelVolume& volume) {
   return {period[0], period[1], period[2]};
 }
 
-/// Of what is on the lattice a translation by a period must be on it, too.
+/// A translation by a period must be one on the lattice. Once the first layer is repeated.
+void check_steps_of_periodic(const LabelVolume& volume, const std::string& name) {
+  if (is_periodic(volume) && voxel_size_world(volume) == 0)
+    refuse_use(name + ": a periodic volume has voxels along the axes of the world whose sides are whole multiples of " +
+               "the shortest one; resample it");
+}
+
 void check_periodic(const LabelVolume& volume, const std::string& name) {
   if (!is_periodic(volume)) return;
   if (volume.smoothing_vox == 0)
     refuse_use(name + ": a periodic volume has no walls that are faces of its voxels; give a smoothing above 0");
-  if (voxel_size_world(volume) == 0)
-    refuse_use(name + ": a periodic volume has voxels along the axes of the world whose sides are whole multiples of " +
-               "the shortest one; resample it");
   for (size_t axis = 0; axis < 3; ++axis)
     if (volume.is_periodic[axis] && volume.size_vox[axis] == kMaxResolution)
       refuse_use(name + ": along a periodic axis a volume has fewer voxels than " + std::to_string(kMaxResolution));
@@ -180,6 +187,27 @@ TriangleSoup soup_of(const LabelWalls& walls, const std::vector<PointQ8>& fair, 
   return soup;
 }
 
+/// Says that the background is no region where it is part of what other labels fill: a grain may have its number.
+void tell_of_background(const LabelVolume& volume, const Tell& tell) {
+  if (!tell) return;
+  const auto& [nx, ny, nz] = volume.size_vox;
+  int64_t at_sides = 0, others_at_sides = 0, all = 0;
+  auto label = volume.labels.begin();
+  for (int32_t k = 0; k < nz; ++k)
+    for (int32_t j = 0; j < ny; ++j)
+      for (int32_t i = 0; i < nx; ++i, ++label) {
+        const bool is_background = *label == volume.background;
+        all += is_background;
+        if (i > 0 && j > 0 && k > 0 && i + 1 < nx && j + 1 < ny && k + 1 < nz) continue;
+        (is_background ? at_sides : others_at_sides) += 1;
+      }
+  if (all == 0 || at_sides >= others_at_sides) return;
+  std::ostringstream percent;
+  percent << std::setprecision(2) << 100. * double(all) / double(volume.labels.size());
+  tell(MessageKind::warning, percent.str() + " % of its voxels have label " + std::to_string(volume.background) +
+                                 ", the background, and are no region; where they are one, give another --background");
+}
+
 void repeat_first_layer(size_t axis, LabelVolume& volume) {
   const std::array<int32_t, 3> size = volume.size_vox;
   std::array<int64_t, 3> step{1, size[0], int64_t(size[0]) * size[1]};
@@ -200,9 +228,15 @@ TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const C
                  name, context);
   AbsorbedIslands absorbed = absorb_islands(volume, context);
   tell_of(absorbed, volume, tell);
+  tell_of_background(volume, tell);
   tell_read(context, kIslandsAbsorbed);
-  for (size_t axis = 0; axis < 3; ++axis)
-    if (volume.is_periodic[axis]) repeat_first_layer(axis, volume);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (!volume.is_periodic[axis]) continue;
+    check_memory(volume, 4 * int64_t(volume.labels.size()) * (volume.size_vox[axis] + 1) / volume.size_vox[axis],
+                 "a copy of its labels with the first layer repeated", name, context);
+    repeat_first_layer(axis, volume);
+  }
+  check_steps_of_periodic(volume, name);
   const WallCount count = count_walls(volume, context);
   check_memory(volume, bytes_to_make_walls(count.triangles(), count.vertices()), "the walls between its labels", name,
                context);

@@ -190,7 +190,8 @@ class WallMaker {
     for (size_t m = 0; m < middles_[z].size(); ++m) is_thin[next++] = 1;
   }
 
-  /// The outer half of a layer at a periodic side is beyond it, and the other one has all of its vertices.
+  /// A periodic volume ends at the centres of its first and last layers, so vertices at their outer corners, and in the
+  /// middles of their edges, are squeezed into their inner halves.
   int32_t quarters(int axis, int32_t halves) const {
     const int32_t end = 2 * labels_.size(axis);
     if (!labels_.is_periodic(axis)) return 2 * halves;

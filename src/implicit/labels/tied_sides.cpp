@@ -44,6 +44,7 @@ std::vector<CornerOfSide> corners_of_side(const LabelWalls& walls, int axis, int
 }  // namespace
 
 void tie_sides(const std::array<bool, 3>& is_periodic, LabelWalls& walls) {
+  if (std::none_of(is_periodic.begin(), is_periodic.end(), [](bool is) { return is; })) return;
   std::vector<uint32_t> parent(walls.rest_quarters.size()), members;
   const View<uint32_t> sets{parent.data(), int64_t(parent.size())};
   for (uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;

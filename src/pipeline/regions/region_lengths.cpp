@@ -132,6 +132,10 @@ LatticeFrame frame_of_walls(const TriangleSoup& walls, const Plan& plan, const s
   const double step_world = walls.regions.voxel_size_world;
   const auto steps_along = [&](double side) { return std::max(std::ceil(side / step_world - 0.5 / kOneVoxelQ8), 1.); };
   const int32_t most = std::min(is_periodic ? kMaxResolution : kMostFiner * resolution, kMaxResolution - 1);
+  if (is_periodic && (step_world <= 0 || steps_along(longest_side(plan.box)) > most))
+    throw Error(ErrorCode::usage, "regions",
+                "a periodic volume has at most " + std::to_string(most) +
+                    " times the shortest side of its voxels along each axis; make it coarser");
   if (step_world <= 0 || steps_along(longest_side(plan.box)) > most)
     return LatticeFrame::around(low, high, std::min(kFiner * resolution, kMaxResolution));
   const auto steps = int32_t(steps_along(longest_side(plan.box)));

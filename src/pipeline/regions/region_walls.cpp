@@ -58,9 +58,8 @@ FeatureMesh walls_of(const TriangleSoup& soup, const PreparedSurface& p, bool le
   if (lengths_vary || !are_thinned_out(soup, p.target.vertices)) return mesh;
   const double edge_world = edge_length_for(mesh, {}, p.target.vertices);
   const auto fewest = uint32_t(kSmallPatch * vertices / p.target.vertices);
-  const EdgeList creases = side_creases(mesh, soup.regions, edge_world);
-  const std::vector<uint32_t> stay = vertices_at_periodic_sides(mesh, soup.regions);
-  return thin_out(std::move(mesh), {creases, stay}, p.surface.frame, edge_world, fewest, context);
+  const KeptInWalls kept{side_creases(mesh, soup.regions, edge_world), vertices_at_periodic_sides(mesh, soup.regions)};
+  return thin_out(std::move(mesh), kept, p.surface.frame, edge_world, fewest, context);
 }
 
 std::map<int32_t, uint64_t> spanned_volumes(const TriangleSoup& soup, const LatticeFrame& frame) {
@@ -82,10 +81,12 @@ std::map<int32_t, uint64_t> spanned_volumes(const TriangleSoup& soup, const Latt
 
 CurveOptions curves_between_regions(const PreparedSurface& p) {
   CurveOptions curves = curve_options(p.options, nullptr, p.target.edge_length_world);
-  if (!p.walls->regions.are_of_voxels || curves.mode != CreaseMode::automatic) return curves;
+  if (!p.walls->regions.are_of_voxels) return curves;
+  if (p.walls->regions.is_periodic())  // all of them, however short they are, whatever was asked for
+    curves.lines = side_creases(p.walls->mesh, p.walls->regions, curves.edge_length_world);
+  if (curves.mode != CreaseMode::automatic) return curves;
   curves.creases = side_creases(p.walls->mesh, p.walls->regions, curves.edge_length_world);
   curves.mode = curves.creases.empty() ? CreaseMode::off : CreaseMode::given;
-  if (p.walls->regions.is_periodic()) curves.lines = curves.creases;  // however short they are
   return curves;
 }
 
@@ -135,7 +136,7 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
     p.walls = walls;
     CurveNetwork network =
         run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p)); });
-    if (soup.regions.is_periodic()) tie_corners(p.walls->mesh, soup.regions.period_world, network);
+    if (soup.regions.is_periodic()) tie_corners(p.walls->mesh, p.surface.frame, soup.regions.period_world, network);
     report_found(p.walls->mesh, network, false, p.report.features);
     const SharedCut cut = cut_walls(p, network, of_face_world, run);
     if (cut->is_requested && field_decides(p.options)) {
@@ -148,6 +149,7 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
       walls->are_too_near =
           run_with_threads(context, [&] { return share_of_near_walls(*cut, cut->seeds) > kMostNear; });
   });
+  if (options.previous) p.report.coherence.why_cold = "the walls of regions are meshed anew in every frame";
   p.report.input.topology = measured.topology;
   p.report.input.dirt = measured.dirt;
   p.report.grid.frame = p.surface.frame;
