@@ -72,7 +72,7 @@ isoshell_compile_as_library(isoshell)
 if(ISOSHELL_PRECOMPILE)
   add_library(isoshell_precompiled OBJECT ${PROJECT_BINARY_DIR}/isoshell.cpp)
   isoshell_compile_as_library(isoshell_precompiled)
-  target_precompile_headers(isoshell_precompiled PRIVATE ${PROJECT_SOURCE_DIR}/src/precompiled.h)
+  target_precompile_headers(isoshell_precompiled PRIVATE <precompiled.h>)  # by no path, so that ccache knows it elsewhere
 endif()
 if(ISOSHELL_VDB)
   target_link_libraries(isoshell PRIVATE OpenVDB::openvdb)
