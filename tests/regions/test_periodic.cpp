@@ -69,7 +69,7 @@ void check_periodic(const LabelVolume& volume, int64_t vertices, Features::Creas
   const TriangleMesh mesh = remesh(surface_of_labels(volume, "labels", 0), options, context).mesh;
   INFO(vertices << " vertices, " << mesh.vertices.size() << " made");
   CHECK(int64_t(mesh.vertices.size()) == vertices);
-  CHECK(fault_of_regions(mesh.triangles, mesh.regions) == "");
+  CHECK(fault_of_regions(mesh.triangles, mesh.regions).empty());
   CHECK(take_census(mesh, context).intersecting_pairs == 0);
   for (int axis = 0; axis < 3; ++axis) {
     if (!volume.is_periodic[size_t(axis)]) continue;
