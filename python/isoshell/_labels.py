@@ -106,11 +106,9 @@ def _smoothing(value: Any) -> float:
 
 
 def _axes(periodic: Any) -> list[bool]:
-    names = periodic.split(",") if isinstance(periodic, str) and periodic else periodic
-    if isinstance(names, str) and not names:
-        names = []
-    if not isinstance(names, (list, tuple)) or any(name not in ("x", "y", "z") for name in names):
-        raise Error(f'periodic is {periodic!r}; give axes: "x", "y", "z", as in "x,y"')
+    names = set(filter(None, periodic.split(","))) if isinstance(periodic, str) else None
+    if names is None or not names <= {"x", "y", "z"}:
+        raise Error(f'periodic is {periodic!r}; give axes, "x", "y" or "z", as in "x,y"')
     return [axis in names for axis in "xyz"]
 
 

@@ -82,10 +82,12 @@ std::map<int32_t, uint64_t> spanned_volumes(const TriangleSoup& soup, const Latt
 CurveOptions curves_between_regions(const PreparedSurface& p) {
   CurveOptions curves = curve_options(p.options, nullptr, p.target.edge_length_world);
   if (!p.walls->regions.are_of_voxels) return curves;
-  if (p.walls->regions.is_periodic())  // all of them, however short they are, whatever was asked for
-    curves.lines = side_creases(p.walls->mesh, p.walls->regions, curves.edge_length_world);
+  const bool is_periodic = p.walls->regions.is_periodic();
+  if (curves.mode != CreaseMode::automatic && !is_periodic) return curves;
+  EdgeList at_sides = side_creases(p.walls->mesh, p.walls->regions, curves.edge_length_world);
+  if (is_periodic) curves.lines = at_sides;  // all of them, however short they are, whatever was asked for
   if (curves.mode != CreaseMode::automatic) return curves;
-  curves.creases = side_creases(p.walls->mesh, p.walls->regions, curves.edge_length_world);
+  curves.creases = std::move(at_sides);
   curves.mode = curves.creases.empty() ? CreaseMode::off : CreaseMode::given;
   return curves;
 }
