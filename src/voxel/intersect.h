@@ -1,7 +1,8 @@
-// Do two triangles meet outside of the corners that they share? Exact, in integers.
+// Do two triangles meet outside of the corners that they share? Exact, in integers: of a lattice's PointQ8, or of any
+// points whose differences and cross products are exact.
 //
-// Budget, coordinates < 2^22: differences < 2^23, cross products < 2^47, and their products with a third difference
-// < 2^72, the one 128-bit sum here.
+// Budget, coordinates of PointQ8 < 2^22: differences < 2^23, cross products < 2^47, and their products with a third
+// difference < 2^72, the one 128-bit sum here.
 #pragma once
 
 #include "voxel/exact_int.h"
@@ -9,54 +10,66 @@
 namespace isoshell {
 
 /// Sign of the volume of (a, b, c, d): positive when d lies on the side that (b - a) x (c - a) points to.
-ISOSHELL_HD inline int side_of_plane(PointQ8 a, PointQ8 b, PointQ8 c, PointQ8 d) {
-  const Vec64 n = cross(difference(b, a), difference(c, a)), r = difference(d, a);
+template <class Point>
+ISOSHELL_HD int side_of_plane(Point a, Point b, Point c, Point d) {
+  const auto n = cross(difference(b, a), difference(c, a));
+  const auto r = difference(d, a);
   const Int128 volume = Int128(n.x) * r.x + Int128(n.y) * r.y + Int128(n.z) * r.z;
   return (volume > 0) - (volume < 0);
 }
 
 /// A point of the plane in which a triangle is seen best: without the axis of the normal's largest component.
+template <class Area>
 struct Point2 {
-  int64_t x, y;
+  Area x, y;
 };
-ISOSHELL_HD inline Point2 seen_along(PointQ8 p, int axis) {
-  return axis == 0 ? Point2{p.y, p.z} : (axis == 1 ? Point2{p.z, p.x} : Point2{p.x, p.y});
+template <class Point>
+ISOSHELL_HD auto seen_along(Point p, int axis) {
+  using Seen = Point2<decltype(cross(difference(p, p), difference(p, p)).x)>;
+  return axis == 0 ? Seen{p.y, p.z} : (axis == 1 ? Seen{p.z, p.x} : Seen{p.x, p.y});
 }
-ISOSHELL_HD inline int turn(Point2 a, Point2 b, Point2 c) {
-  const int64_t area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+template <class Area>
+ISOSHELL_HD int turn(Point2<Area> a, Point2<Area> b, Point2<Area> c) {
+  const Area area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   return (area > 0) - (area < 0);
 }
 /// c lies on the line through a and b: is it on the closed segment?
-ISOSHELL_HD inline bool within_segment(Point2 a, Point2 b, Point2 c) {
+template <class Area>
+ISOSHELL_HD bool within_segment(Point2<Area> a, Point2<Area> b, Point2<Area> c) {
   return (c.x - a.x) * (c.x - b.x) <= 0 && (c.y - a.y) * (c.y - b.y) <= 0;
 }
-ISOSHELL_HD inline bool segments_meet(Point2 a, Point2 b, Point2 c, Point2 d) {
+template <class Area>
+ISOSHELL_HD bool segments_meet(Point2<Area> a, Point2<Area> b, Point2<Area> c, Point2<Area> d) {
   const int s = turn(a, b, c), t = turn(a, b, d), u = turn(c, d, a), v = turn(c, d, b);
   if (s * t < 0 && u * v < 0) return true;
   return (s == 0 && within_segment(a, b, c)) || (t == 0 && within_segment(a, b, d)) ||
          (u == 0 && within_segment(c, d, a)) || (v == 0 && within_segment(c, d, b));
 }
-ISOSHELL_HD inline bool triangle_holds(Point2 a, Point2 b, Point2 c, Point2 p) {
+template <class Area>
+ISOSHELL_HD bool triangle_holds(Point2<Area> a, Point2<Area> b, Point2<Area> c, Point2<Area> p) {
   const int s = turn(a, b, p), t = turn(b, c, p), u = turn(c, a, p);
   return (s >= 0 && t >= 0 && u >= 0) || (s <= 0 && t <= 0 && u <= 0);
 }
 
 /// Axis of the largest component of a triangle's normal; -1 for a triangle without area.
-ISOSHELL_HD inline int best_axis(PointQ8 a, PointQ8 b, PointQ8 c) {
-  const Vec64 n = cross(difference(b, a), difference(c, a));
-  const int64_t x = n.x < 0 ? -n.x : n.x, y = n.y < 0 ? -n.y : n.y, z = n.z < 0 ? -n.z : n.z;
+template <class Point>
+ISOSHELL_HD int best_axis(Point a, Point b, Point c) {
+  const auto n = cross(difference(b, a), difference(c, a));
+  const auto x = n.x < 0 ? -n.x : n.x, y = n.y < 0 ? -n.y : n.y, z = n.z < 0 ? -n.z : n.z;
   if (x == 0 && y == 0 && z == 0) return -1;
   return x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
 }
 
-ISOSHELL_HD inline bool boxes_of_segments_meet(PointQ8 p, PointQ8 q, PointQ8 a, PointQ8 b) {
-  const auto apart = [](int32_t s, int32_t t, int32_t u, int32_t v) {
+template <class Point>
+ISOSHELL_HD bool boxes_of_segments_meet(Point p, Point q, Point a, Point b) {
+  const auto apart = [](auto s, auto t, auto u, auto v) {
     return (s < u && s < v && t < u && t < v) || (s > u && s > v && t > u && t > v);
   };
   return !apart(p.x, q.x, a.x, b.x) && !apart(p.y, q.y, a.y, b.y) && !apart(p.z, q.z, a.z, b.z);
 }
 /// Closed segments, each of which may be a point.
-ISOSHELL_HD inline bool segments_meet_in_space(PointQ8 p, PointQ8 q, PointQ8 a, PointQ8 b) {
+template <class Point>
+ISOSHELL_HD bool segments_meet_in_space(Point p, Point q, Point a, Point b) {
   if (side_of_plane(p, q, a, b) != 0) return false;
   int axis = best_axis(p, q, a);
   if (axis < 0) axis = best_axis(p, q, b);
@@ -66,7 +79,8 @@ ISOSHELL_HD inline bool segments_meet_in_space(PointQ8 p, PointQ8 q, PointQ8 a, 
 }
 
 /// Closed segment pq, which may be a point, against closed triangle abc.
-ISOSHELL_HD inline bool segment_meets_triangle(PointQ8 p, PointQ8 q, PointQ8 a, PointQ8 b, PointQ8 c) {
+template <class Point>
+ISOSHELL_HD bool segment_meets_triangle(Point p, Point q, Point a, Point b, Point c) {
   const int side_p = side_of_plane(a, b, c, p), side_q = side_of_plane(a, b, c, q);
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) {
@@ -74,8 +88,8 @@ ISOSHELL_HD inline bool segment_meets_triangle(PointQ8 p, PointQ8 q, PointQ8 a, 
     if (axis < 0)
       return segments_meet_in_space(p, q, a, b) || segments_meet_in_space(p, q, b, c) ||
              segments_meet_in_space(p, q, c, a);
-    const Point2 p2 = seen_along(p, axis), q2 = seen_along(q, axis), a2 = seen_along(a, axis), b2 = seen_along(b, axis),
-                 c2 = seen_along(c, axis);
+    const auto p2 = seen_along(p, axis), q2 = seen_along(q, axis), a2 = seen_along(a, axis), b2 = seen_along(b, axis),
+               c2 = seen_along(c, axis);
     return triangle_holds(a2, b2, c2, p2) || segments_meet(p2, q2, a2, b2) || segments_meet(p2, q2, b2, c2) ||
            segments_meet(p2, q2, c2, a2);
   }
@@ -84,15 +98,18 @@ ISOSHELL_HD inline bool segment_meets_triangle(PointQ8 p, PointQ8 q, PointQ8 a, 
 }
 
 /// A triangle by the ids and the places of its corners.
-struct CornersOfTriangle {
+template <class Point>
+struct CornersAt {
   uint32_t id[3];
-  PointQ8 at[3];
+  Point at[3];
 };
+using CornersOfTriangle = CornersAt<PointQ8>;
 
 /// Two different closed triangles: do they meet outside of what they share? Corners are shared by id: another one at
 /// the same place counts. A triangle without area is the segment, or the point, that its corners span. False for three
 /// shared corners.
-ISOSHELL_HD inline bool triangles_intersect(const CornersOfTriangle& s, const CornersOfTriangle& t) {
+template <class Point>
+ISOSHELL_HD bool triangles_intersect(const CornersAt<Point>& s, const CornersAt<Point>& t) {
   int shared = 0, own_s = 0, own_t = 0, corner_s = 0, corner_t = 0;  // the sums of the places give the place left over
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
@@ -101,13 +118,13 @@ ISOSHELL_HD inline bool triangles_intersect(const CornersOfTriangle& s, const Co
   if (shared == 2) {
     // Around a common edge they overlap only when one is folded onto the other.
     const int c = 3 - own_s, d = 3 - own_t;
-    const PointQ8 a = s.at[(c + 1) % 3], b = s.at[(c + 2) % 3];
+    const Point a = s.at[(c + 1) % 3], b = s.at[(c + 2) % 3];
     if (side_of_plane(a, b, s.at[c], t.at[d]) != 0) return false;
     const int axis = best_axis(a, b, s.at[c]);
     if (axis < 0 || best_axis(a, b, t.at[d]) < 0)  // what sticks out of the edge is a corner, or ends at one
       return segment_meets_triangle(s.at[c], s.at[c], t.at[0], t.at[1], t.at[2]) ||
              segment_meets_triangle(t.at[d], t.at[d], s.at[0], s.at[1], s.at[2]);
-    const Point2 a2 = seen_along(a, axis), b2 = seen_along(b, axis);
+    const auto a2 = seen_along(a, axis), b2 = seen_along(b, axis);
     return turn(a2, b2, seen_along(s.at[c], axis)) == turn(a2, b2, seen_along(t.at[d], axis));
   }
   if (shared == 1) {
@@ -125,13 +142,14 @@ ISOSHELL_HD inline bool triangles_intersect(const CornersOfTriangle& s, const Co
 
 /// Whether the corners of a triangle that are not another one's lie on one side of that one's plane, and not in it:
 /// they meet in shared corners at most. Most neighbours in a mesh do.
-inline bool is_beside_plane(const CornersOfTriangle& t, const CornersOfTriangle& of) {
-  const Vec64 normal = cross(difference(of.at[1], of.at[0]), difference(of.at[2], of.at[0]));
+template <class Point>
+bool is_beside_plane(const CornersAt<Point>& t, const CornersAt<Point>& of) {
+  const auto normal = cross(difference(of.at[1], of.at[0]), difference(of.at[2], of.at[0]));
   int low = 1, high = -1;
   for (int j = 0; j < 3; ++j) {
     const uint32_t id = t.id[j];
     if (id == of.id[0] || id == of.id[1] || id == of.id[2]) continue;
-    const Vec64 r = difference(t.at[j], of.at[0]);
+    const auto r = difference(t.at[j], of.at[0]);
     const Int128 volume = Int128(normal.x) * r.x + Int128(normal.y) * r.y + Int128(normal.z) * r.z;
     const int side = (volume > 0) - (volume < 0);
     low = side < low ? side : low;
@@ -141,7 +159,8 @@ inline bool is_beside_plane(const CornersOfTriangle& t, const CornersOfTriangle&
 }
 
 /// As triangles_intersect, sooner where most triangles lie beside each other, as neighbours do.
-inline bool triangles_intersect_apart(const CornersOfTriangle& s, const CornersOfTriangle& t) {
+template <class Point>
+bool triangles_intersect_apart(const CornersAt<Point>& s, const CornersAt<Point>& t) {
   return !is_beside_plane(t, s) && !is_beside_plane(s, t) && triangles_intersect(s, t);
 }
 

@@ -7,6 +7,7 @@
 #include "geometry/segment.h"
 #include "geometry/world_vector.h"
 #include "repair/arrangement/arrange_faces.h"
+#include "repair/arrangement/lattice_faces.h"
 #include "support/catch.h"
 #include "support/shapes.h"
 #include "voxel/intersect.h"
@@ -68,14 +69,14 @@ inline int64_t count_crossings(const repair::ArrangedFaces& faces) {
     most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
   }
   // The lattice that the doc comment names, so that its points are what they were decided on.
-  constexpr double kMargin = 1 << 12;
+  constexpr double kMargin = 1 << 24;
   const double a_step =
-      std::max({most.x - least.x, most.y - least.y, most.z - least.z}) / (double(1 << 28) - 2 * kMargin);
+      std::max({most.x - least.x, most.y - least.y, most.z - least.z}) / (double(int64_t(1) << 40) - 2 * kMargin);
   const auto snapped = [&](const WorldPoint& p) {
-    const auto round = [&](double x, double from) { return int32_t(std::floor((x - from) / a_step + kMargin + .5)); };
-    return PointQ8{round(p.x, least.x), round(p.y, least.y), round(p.z, least.z)};
+    const auto round = [&](double x, double from) { return int64_t(std::floor((x - from) / a_step + kMargin + .5)); };
+    return repair::StepPoint{round(p.x, least.x), round(p.y, least.y), round(p.z, least.z)};
   };
-  std::vector<CornersOfTriangle> all;
+  std::vector<CornersAt<repair::StepPoint>> all;
   for (const Corners& c : faces.face)
     all.push_back(
         {{c[0], c[1], c[2]}, {snapped(faces.point[c[0]]), snapped(faces.point[c[1]]), snapped(faces.point[c[2]])}});

@@ -6,11 +6,12 @@
 #include "isoshell/advanced/stages.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/error.h"
-#include "measure/crossings.h"
+#include "measure/box_tree.h"
 #include "repair/arrangement/step_frame.h"
 #include "repair/solids/winding.h"
 #include "support/catch.h"
 #include "support/shapes.h"
+#include "voxel/intersect.h"
 
 using namespace isoshell;
 using shapes::box;
@@ -92,13 +93,19 @@ struct GridBoxes {
 size_t count_crossings(const TriangleSoup& result, const TriangleSoup& input) {
   const repair::StepFrame frame(box_of(input.vertices, input.triangles));
   const WeldedVertices welded = weld_vertices(result.vertices, result.triangles);
-  std::vector<PointQ8> points;
-  for (const WorldPoint& p : welded.position) points.push_back(frame.from(p));
-  std::vector<TriangleIndices> triangles;
-  for (const auto& [a, b, c] : result.triangles)
-    triangles.push_back({welded.place[a], welded.place[b], welded.place[c]});
-  return crossing_pairs({points.data(), int64_t(points.size())}, {triangles.data(), int64_t(triangles.size())}, {}, {})
-      .size();
+  std::vector<CornersAt<repair::StepPoint>> all;
+  std::vector<BoxQ8> boxes;
+  for (const auto& [a, b, c] : result.triangles) {
+    all.push_back({{welded.place[a], welded.place[b], welded.place[c]},
+                   {frame.from(result.vertices[a]), frame.from(result.vertices[b]), frame.from(result.vertices[c])}});
+    const auto& at = all.back().at;
+    boxes.push_back(repair::coarse(box_of(at[0], at[1], at[2])));
+  }
+  const BoxTree tree(boxes);
+  size_t count = 0;
+  for (size_t g = 0; g < tree.groups(); ++g)
+    tree.for_pairs_of(g, [&](uint32_t s, uint32_t t) { count += triangles_intersect(all[s], all[t]) ? 1 : 0; });
+  return count;
 }
 
 int winding_at(const TriangleSoup& soup, const WorldPoint& p) {

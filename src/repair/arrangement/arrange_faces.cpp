@@ -14,17 +14,19 @@ namespace isoshell::repair {
 namespace {
 
 // What is bent through points within reach may come into reach of others, and again, where many surfaces are nearly
-// one. After some rounds only what meets is cut, and less is bent. Where that does not end either, all is tried again
-// with a smaller reach.
-constexpr double kReachSteps = 128, kReaches[] = {1, .75, .5, .25, .125};
-constexpr double kMostReachSteps = 1 << 24;  // a 16th of the longest side; boxes are numbers of 32 bits
-constexpr int kNearEdgeRounds = 3, kFullRounds = 8, kMostRounds = 32;
-constexpr size_t kMostContactsOfFace = 16, kMostGrowth = 3, kFewFaces = 4096;
+// one. After some rounds only what meets is cut, and what is bent then is bent by as little as points are rounded by;
+// what still meets after that, by more from round to round. Where contacts grow in number instead, faces cross at small
+// angles: all is begun again, with only what meets.
+constexpr double kReachSteps = 128 * kFine;
+constexpr double kMostReachSteps = kFine * (1 << 24);  // a 16th of the longest side; boxes are numbers of 32 bits
+constexpr int kNearEdgeRounds = 3, kFullRounds = 6, kMostRounds = 32;
+constexpr int kFirstRounds = 4;      // in which parts that lie on each other have most of their contacts
+constexpr size_t kFewContacts = 64;  // these may grow in number
+constexpr double kReachGrowth = 4;   // from round to round, of what meets
 
-// Of all reaches and rounds together, half of what is left for each reach: a round takes 10 to 40 a triangle where
-// large parts touch or overlap, and a house with a reach of 1.5 centimetres millions. Soups in one plane would take
-// thousands of times that.
-constexpr int64_t kLeastWork = 1 << 25, kWorkOfTriangle = 1 << 10;
+// Of all rounds with one reach. Parts that touch or overlap take up to 40 pairs and two contacts a triangle; soups in
+// one plane would take thousands of times that.
+constexpr int64_t kLeastWork = 1 << 26, kWorkOfTriangle = 1 << 13;
 
 LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, const StepFrame& frame) {
   LatticeFaces faces;
@@ -41,7 +43,7 @@ LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, con
   return faces;
 }
 
-BoxQ8 box_of_face(const LatticeFaces& faces, size_t f) {
+BoxOf<StepPoint> box_of_face(const LatticeFaces& faces, size_t f) {
   const Corners& c = faces.face[f];
   return box_of(faces.point[c[0]], faces.point[c[1]], faces.point[c[2]]);
 }
@@ -53,7 +55,7 @@ bool is_of_first(const LatticeFaces& faces, size_t f, size_t first_of_second) {
 /// Of two groups the faces whose boxes meet some of the other one are unsettled, and no others. Result: whether any
 /// are.
 bool unsettle_near(LatticeFaces& faces, size_t first_of_second) {
-  const auto box = [&](size_t f) { return widened(box_of_face(faces, f), int32_t(faces.weld_steps())); };
+  const auto box = [&](size_t f) { return coarse(widened(box_of_face(faces, f), int64_t(faces.weld_steps()))); };
   std::fill(faces.is_unsettled.begin(), faces.is_unsettled.end(), uint8_t(0));
   std::array<std::optional<BoxQ8>, 2> around;
   for (size_t f = 0; f < faces.face.size(); ++f) {
@@ -123,22 +125,23 @@ ArrangedFaces result_of(LatticeFaces faces, const TriangleSoup& soup, const Weld
 }
 
 /// None, and a place where faces cross, when rounds do not come to an end, or take more work than they may.
-std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, StepPoint& failed_at,
+std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t work_left, StepPoint& failed_at,
                                     const Context& context) {
-  size_t most_faces = 0;
+  std::array<size_t, 2> contacts_before{};  // of the last round and the one before that
   for (int round = 0; round < kMostRounds; ++round) {
     if (round == kNearEdgeRounds) faces.leaves_near_edges = true;
-    if (round == kFullRounds) {
+    if (round == kFullRounds && !faces.leaves_near) {
       faces.reach_steps = kLateReachSteps;
       faces.leaves_near = true;
-      most_faces = kFewFaces + kMostGrowth * faces.face.size();
     }
     Contacts contacts = find_contacts(faces, work_left, context);
     if (!contacts.found.empty()) failed_at = faces.point[faces.face[contacts.found.front().pair[0]][0]];
-    const bool is_growing = (round > kFullRounds && faces.face.size() > most_faces) ||
-                            contacts.found.size() > kFewFaces + kMostContactsOfFace * faces.face.size();
+    const size_t count = contacts.found.size() + contacts.close.size();
+    const bool is_growing = round >= kFirstRounds && count > std::max(contacts_before[size_t(round % 2)], kFewContacts);
+    contacts_before[size_t(round % 2)] = count;
     work_left -= contacts.work();
-    if (is_growing || work_left < 0) return {};
+    if (work_left < 0 || (is_growing && !faces.leaves_near)) return {};
+    if (faces.leaves_near && round > 0) faces.reach_steps = std::min(kReachSteps, kReachGrowth * faces.reach_steps);
     if (!contacts.close.empty()) {
       weld_close(faces, contacts);
     } else if (!contacts.found.empty()) {
@@ -151,15 +154,6 @@ std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, Step
     }
   }
   return {};
-}
-
-/// What is asked for, less, and as without a wish.
-std::vector<double> reaches_from(double most_steps) {
-  std::vector<double> reaches;
-  for (const double r : kReaches) reaches.push_back(r * most_steps);
-  for (const double r : kReaches)
-    if (r * kReachSteps < reaches.back()) reaches.push_back(r * kReachSteps);
-  return reaches;
 }
 
 std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& failed_at, const Context& context,
@@ -175,20 +169,21 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
     return apart;
   }
   unsettle_crossing(whole, groups.is_checked, context);
-  int64_t work_left = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
-  for (const double reach_steps : reaches_from(whole.reach_steps)) {
+  const int64_t most_work = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
+  std::vector<double> reaches = {kReachSteps, kLateReachSteps};
+  if (whole.reach_steps > kReachSteps) reaches.insert(reaches.begin(), whole.reach_steps);
+  for (const double reach_steps : reaches) {
     LatticeFaces faces = whole;
     faces.reach_steps = reach_steps;
+    const bool is_last = reach_steps == kLateReachSteps;
+    faces.leaves_near = is_last;
     StepPoint at{0, 0, 0};
-    const int64_t for_others = work_left / 2;
-    int64_t left = work_left - for_others;
-    std::optional<LatticeFaces> cut = cut_all(std::move(faces), left, at, context);
+    std::optional<LatticeFaces> cut = cut_all(std::move(faces), most_work, at, context);
     if (cut) {
       ArrangedFaces result = result_of(std::move(*cut), soup, welded, box);
-      result.near_world = groups.near_world * (reach_steps / whole.reach_steps);
+      result.near_world = is_last ? 0 : groups.near_world * (reach_steps / whole.reach_steps);
       return result;
     }
-    work_left = for_others + std::max<int64_t>(0, left);
     if (reach_steps == whole.reach_steps) failed_at = frame.to_world(at);
   }
   return {};

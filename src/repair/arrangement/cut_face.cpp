@@ -13,7 +13,7 @@ namespace {
 
 /// Along the largest component of the normal; the first of those that are nearly as large, so that faces on each other
 /// are seen alike.
-int axis_of(Vec64 n) {
+int axis_of(const Vec128& n) {
   const double x = std::abs(double(n.x)), y = std::abs(double(n.y)), z = std::abs(double(n.z));
   const double least = .9 * std::max({x, y, z});
   return x >= least ? 0 : y >= least ? 1 : 2;
@@ -62,7 +62,7 @@ class Cut {
 
   bool triangulate() {
     const StepPoint &a = point_[cut_.corner[0]], &b = point_[cut_.corner[1]], &c = point_[cut_.corner[2]];
-    const Vec64 n = cross(difference(b, a), difference(c, a));
+    const Vec128 n = cross(difference(b, a), difference(c, a));
     const int axis = axis_of(n);
     const bool is_turned = (axis == 0 ? n.x : axis == 1 ? n.y : n.z) < 0;
     std::vector<PlanePoint> plane;
@@ -81,9 +81,22 @@ class Cut {
       for (const uint32_t v : t) is_there[v] = 1;
     if (std::count(is_there.begin(), is_there.end(), 1) != int64_t(is_there.size())) return false;
     made_ = *found;
-    const bool is_made = turn_flat();
+    const bool is_made = turn_flat() && has_border(border);
     for (Corners& t : made_) t = {used_[t[0]], used_[t[1]], used_[t[2]]};
     return is_made;
+  }
+
+  /// Whether the triangles made have this border. Points of edges may turn a low face over, or pass one another.
+  bool has_border(std::vector<Ends> border) const {
+    std::vector<Ends> edges;
+    for (const Corners& t : made_)
+      for (size_t i = 0; i < 3; ++i) edges.push_back({t[i], t[(i + 1) % 3]});
+    for (const Ends& e : border) edges.push_back({e[1], e[0]});
+    border = edges;
+    for (Ends& e : border) std::swap(e[0], e[1]);
+    std::sort(edges.begin(), edges.end());
+    std::sort(border.begin(), border.end());
+    return edges == border;
   }
 
   /// Points of an edge are a little off it, so that three of them may be a triangle. Its longest edge is flipped: the

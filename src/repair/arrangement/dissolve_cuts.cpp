@@ -15,9 +15,9 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr double kMostOffSteps = 16;  // what rounding leaves of a straight line, or a plane, from cut to cut
-constexpr double kRoundedSteps = 2;   // what is left of a plane when its corners are put on the lattice
-constexpr double kNearlyOne = .999;   // of the cosine between normals, before planes are compared
+constexpr double kMostOffSteps = 16 * kFine;  // what rounding leaves of a straight line, or a plane, from cut to cut
+constexpr double kRoundedSteps = 2 * kFine;   // what is left of a plane when its corners are put on the lattice
+constexpr double kNearlyOne = .999;           // of the cosine between normals, before planes are compared
 
 /// An edge of a piece whose neighbour there is of another triangle; the piece is to the left of it.
 struct BorderEdge {
@@ -261,7 +261,7 @@ class Dissolver {
   bool covers(const std::vector<std::array<uint32_t, 3>>& made, const std::vector<PlanePoint>& plane, uint32_t source,
               const WorldPoint& normal) const {
     const auto doubled = [](PlanePoint a, PlanePoint b, PlanePoint c) {
-      return double((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+      return double(b.x - a.x) * double(c.y - a.y) - double(b.y - a.y) * double(c.x - a.x);
     };
     double before = 0, after = 0, around = 0;
     for (const uint32_t f : pieces_.in(source)) {

@@ -19,7 +19,7 @@ constexpr size_t kGroupsOfTask = 128, kFacesOfTask = 4096;
 
 BoxQ8 reach_of(const LatticeFaces& faces, uint32_t f) {
   const Corners& c = faces.face[f];
-  return widened(box_of(faces.point[c[0]], faces.point[c[1]], faces.point[c[2]]), int32_t(faces.weld_steps()));
+  return coarse(widened(box_of(faces.point[c[0]], faces.point[c[1]], faces.point[c[2]]), int64_t(faces.weld_steps())));
 }
 
 size_t tasks_of(size_t count, size_t of_task) { return (count + of_task - 1) / of_task; }
@@ -32,7 +32,8 @@ Contacts find_contacts(const LatticeFaces& faces, int64_t most_work, const Conte
   std::vector<uint32_t> unsettled;
   for (uint32_t f = 0; f < faces.face.size(); ++f) {
     if (!faces.is_unsettled[f]) continue;
-    if (!meet_itself(faces, f, all)) unsettled.push_back(f);
+    const bool stays = faces.leaves_near && has_area(faces, f);
+    if (stays || !meet_itself(faces, f, all)) unsettled.push_back(f);
   }
   std::vector<BoxQ8> boxes(unsettled.size());
   for (size_t i = 0; i < boxes.size(); ++i) boxes[i] = reach_of(faces, unsettled[i]);

@@ -7,17 +7,46 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/box.h"
 #include "isoshell/advanced/lattice.h"
 #include "repair/holes/repair_mesh.h"
 #include "voxel/exact_int.h"
 
 namespace isoshell::repair {
 
-/// Coordinates are from 0 to 2^28. On these voxel/intersect.h is exact, too: differences are at most 2^28, cross
-/// products below 2^58, and volumes have 128 bits.
-using StepPoint = PointQ8;
-inline WorldPoint as_world(StepPoint p) { return {double(p.x), double(p.y), double(p.z)}; }
-inline WorldPoint as_world(Vec64 v) { return {double(v.x), double(v.y), double(v.z)}; }
+/// Coordinates are from 0 to 2^40, so that a point which is rounded to them stays on its faces but for what is far
+/// below the precision of files, also where faces cross at small angles. On these voxel/intersect.h is exact:
+/// differences are at most 2^40, cross products 2^81, and volumes below 2^123.
+struct StepPoint {
+  int64_t x, y, z;
+};
+struct StepVector {
+  int64_t x, y, z;
+};
+struct Vec128 {
+  Int128 x, y, z;
+};
+inline StepVector difference(StepPoint a, StepPoint b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec128 cross(StepVector a, StepVector b) {
+  const auto minor = [](int64_t s, int64_t t, int64_t u, int64_t v) { return Int128(s) * v - Int128(t) * u; };
+  return {minor(a.y, a.z, b.y, b.z), minor(a.z, a.x, b.z, b.x), minor(a.x, a.y, b.x, b.y)};
+}
+template <class Vector>
+WorldPoint as_world(const Vector& v) {
+  return {double(v.x), double(v.y), double(v.z)};
+}
+
+/// Positions of files are exact to this many steps or more: lengths that say what is made one are multiples.
+constexpr int kFineBits = 12;
+constexpr double kFine = 1 << kFineBits;
+
+/// In cells of kFine steps, whose numbers have 32 bits, around all of it.
+inline BoxQ8 coarse(const BoxOf<StepPoint>& box) {
+  const auto cell = [](const StepPoint& p) {
+    return PointQ8{int32_t(p.x >> kFineBits), int32_t(p.y >> kFineBits), int32_t(p.z >> kFineBits)};
+  };
+  return {cell(box.min), cell(box.max)};
+}
 
 /// Along a direction; none at first.
 struct Range {
@@ -45,7 +74,7 @@ struct LatticeFaces {
   std::vector<Corners> face;
   std::vector<uint32_t> source;       ///< per face
   std::vector<uint8_t> is_unsettled;  ///< per face: what it meets is still to be found
-  double reach_steps = 128;           ///< a point is on an edge or a face, and edges meet, within that
+  double reach_steps = 128 * kFine;   ///< a point is on an edge or a face, and edges meet, within that
   bool leaves_near_edges = false;     ///< edges within reach stay as they are where their faces do not meet
   bool leaves_near = false;           ///< what is within reach without meeting stays as it is
 
@@ -68,8 +97,8 @@ struct Contacts {
   std::vector<std::array<uint32_t, 2>> crossing;  ///< faces that intersect though they have no contact
   int64_t pairs = 0;                              ///< of faces that were looked at
 
-  /// A contact takes as long as many pairs, and memory.
-  int64_t work() const { return pairs + 16 * int64_t(found.size()); }
+  /// To find a contact and cut its faces takes as long as this many pairs.
+  int64_t work() const { return pairs + 256 * int64_t(found.size()); }
 };
 
 }  // namespace isoshell::repair

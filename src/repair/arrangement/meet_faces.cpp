@@ -1,5 +1,5 @@
 // See meet_faces.h. Whether an edge passes through a face is decided in integers; how far points and edges are from
-// each other in doubles, which are right to a millionth of a step.
+// each other in doubles, which are right to a thousandth of a step.
 #include "repair/arrangement/meet_faces.h"
 
 #include <cmath>
@@ -11,10 +11,10 @@ namespace isoshell::repair {
 namespace {
 
 double square(double x) { return x * x; }
-Vec64 normal_of(StepPoint a, StepPoint b, StepPoint c) { return cross(difference(b, a), difference(c, a)); }
-Int128 product(Vec64 a, Vec64 b) { return Int128(a.x) * b.x + Int128(a.y) * b.y + Int128(a.z) * b.z; }
+Vec128 normal_of(StepPoint a, StepPoint b, StepPoint c) { return cross(difference(b, a), difference(c, a)); }
+Int128 product(const Vec128& a, const StepVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 StepPoint rounded(const WorldPoint& p) {
-  return {int32_t(std::floor(p.x + .5)), int32_t(std::floor(p.y + .5)), int32_t(std::floor(p.z + .5))};
+  return {int64_t(std::floor(p.x + .5)), int64_t(std::floor(p.y + .5)), int64_t(std::floor(p.z + .5))};
 }
 
 HeightPlane plane_through(const WorldPoint& p, const WorldPoint& normal) {
@@ -145,14 +145,17 @@ class FacePair {
     add_edges();
     for (size_t s = 0; s < 2; ++s)
       for (size_t i = 0; i < 3; ++i) add_pass(s, i);
-    if (to_.found.size() == before && triangles_intersect_apart(corners_of(0), corners_of(1)))
-      to_.crossing.push_back(number_);
+    if (to_.found.size() > before || !triangles_intersect_apart(corners_of(0), corners_of(1))) return;
+    bool is_low = false;  // the edges of such a face are near each other, and not where it is met
+    if (faces_.leaves_near)
+      for (const uint32_t f : number_) is_low |= meet_itself(faces_, f, to_);
+    if (!is_low) to_.crossing.push_back(number_);
   }
 
  private:
   StepPoint at(uint32_t v) const { return faces_.point[v]; }
 
-  CornersOfTriangle corners_of(size_t s) const {
+  CornersAt<StepPoint> corners_of(size_t s) const {
     const auto& [a, b, c] = corner_[s];
     return {{a, b, c}, {at(a), at(b), at(c)}};
   }
@@ -217,9 +220,9 @@ class FacePair {
 
   /// Whether two edges without a common end meet, and where; `at_end` when an end of one is on the other.
   Meeting meeting_of(const Ends& d, const Ends& e, StepPoint& where) const {
-    const Vec64 u = difference(at(d[1]), at(d[0])), w = difference(at(e[1]), at(e[0])),
-                r = difference(at(e[0]), at(d[0])), normal = cross(u, w);
-    const WorldPoint n = as_world(normal);
+    const StepVector u = difference(at(d[1]), at(d[0])), w = difference(at(e[1]), at(e[0])),
+                     r = difference(at(e[0]), at(d[0]));
+    const WorldPoint n = as_world(cross(u, w));
     const double sq = length_sq(n);
     if (sq > 0 && std::abs(dot(n, as_world(r))) > faces_.reach_steps * std::sqrt(sq)) return Meeting::apart;
     if (is_on(d[0], e) || is_on(d[1], e) || is_on(e[0], d) || is_on(e[1], d)) return Meeting::at_end;
@@ -254,7 +257,7 @@ class FacePair {
     if (is_met_[s][i] || place_[s][i] != kApart || place_[s][(i + 1) % 3] != kApart) return;
     const Corners& other = corner_[1 - s];
     const Ends d = edge_of(corner_[s], i);
-    const Vec64& n = normal_[1 - s];
+    const Vec128& n = normal_[1 - s];
     const StepPoint a = at(other[0]), b = at(other[1]), c = at(other[2]), p = at(d[0]), q = at(d[1]);
     const Int128 from = product(n, difference(p, a)), to = product(n, difference(q, a));
     if (from == to || (from > 0 && to > 0) || (from < 0 && to < 0)) return;
@@ -274,12 +277,18 @@ class FacePair {
   std::array<uint32_t, 2> number_;
   std::array<Corners, 2> corner_;
   std::array<HeightPlane, 2> plane_;
-  std::array<Vec64, 2> normal_;
+  std::array<Vec128, 2> normal_;
   std::array<std::array<int, 3>, 2> place_{};
   std::array<std::array<bool, 3>, 2> is_met_{};
 };
 
 }  // namespace
+
+bool has_area(const LatticeFaces& faces, uint32_t f) {
+  const Corners& c = faces.face[f];
+  const Vec128 n = normal_of(faces.point[c[0]], faces.point[c[1]], faces.point[c[2]]);
+  return n.x != 0 || n.y != 0 || n.z != 0;
+}
 
 FacePlanes planes_of(const LatticeFaces& faces, uint32_t f) {
   FacePlanes planes;
@@ -305,8 +314,6 @@ void meet_faces(const LatticeFaces& faces, const FacePlanes& f, const FacePlanes
 
 bool meet_itself(const LatticeFaces& faces, uint32_t f, Contacts& to) {
   const Corners& corner = faces.face[f];
-  const Vec64 n = normal_of(faces.point[corner[0]], faces.point[corner[1]], faces.point[corner[2]]);
-  if (faces.leaves_near && (n.x != 0 || n.y != 0 || n.z != 0)) return false;
   size_t longest = 0;
   double longest_sq = -1;
   bool is_short = false;

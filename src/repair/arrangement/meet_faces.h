@@ -28,6 +28,8 @@ FacePlanes planes_of(const LatticeFaces& faces, uint32_t f);
 /// which is decided exactly, something is added.
 void meet_faces(const LatticeFaces& faces, const FacePlanes& f, const FacePlanes& g, Contacts& to);
 
+bool has_area(const LatticeFaces& faces, uint32_t f);
+
 /// Adds the contact of a face with itself, if it is too low to be a triangle: its apex in its longest edge, or corners
 /// that are to be one. Result: whether it is.
 bool meet_itself(const LatticeFaces& faces, uint32_t f, Contacts& to);

@@ -18,16 +18,17 @@ class StepFrame {
   }
   StepPoint from(const WorldPoint& p) const {
     const WorldPoint s = (1 / a_step_) * (p - least_);
-    const auto rounded = [](double x) { return int32_t(std::floor(x + kMarginSteps + .5)); };
+    const auto rounded = [](double x) { return int64_t(std::floor(x + kMarginSteps + .5)); };
     return {rounded(s.x), rounded(s.y), rounded(s.z)};
   }
   double steps(double length_world) const { return length_world / a_step_; }
   WorldPoint to_world(StepPoint s) const {
-    return least_ + a_step_ * WorldPoint{s.x - kMarginSteps, s.y - kMarginSteps, s.z - kMarginSteps};
+    return least_ +
+           a_step_ * WorldPoint{double(s.x) - kMarginSteps, double(s.y) - kMarginSteps, double(s.z) - kMarginSteps};
   }
 
  private:
-  static constexpr double kSteps = double(int64_t(1) << 28), kMarginSteps = 1 << 12;
+  static constexpr double kSteps = double(int64_t(1) << 40), kMarginSteps = 1 << 24;
   WorldPoint least_;
   double a_step_;
 };

@@ -27,6 +27,26 @@ struct Edge {
   int at;
 };
 
+/// Twice the area of abc, above 0 where they turn to the left.
+Int128 turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+  return Int128(b.x - a.x) * (c.y - a.y) - Int128(b.y - a.y) * (c.x - a.x);
+}
+
+/// Whether d is in the circle around abc, which turn to the left. Products have up to 166 bits: what one factor has
+/// above 2^40 and below that is summed by itself.
+bool is_in_circle(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c, const PlanePoint& d) {
+  constexpr int kBits = 40;
+  Int128 high = 0, low = 0;
+  const auto add = [&](const PlanePoint& p, const Int128& by) {
+    const Int128 lifted = Int128(p.x - d.x) * (p.x - d.x) + Int128(p.y - d.y) * (p.y - d.y);
+    high += (lifted >> kBits) * by;
+    low += (lifted & ((Int128(1) << kBits) - 1)) * by;
+  };
+  add(a, turn(d, b, c)), add(b, turn(d, c, a)), add(c, turn(d, a, b));
+  high += low >> kBits;
+  return high > 0 || (high == 0 && (low & ((Int128(1) << kBits) - 1)) > 0);
+}
+
 class PlaneTriangulation {
  public:
   explicit PlaneTriangulation(const std::vector<PlanePoint>& points)
@@ -120,11 +140,8 @@ class PlaneTriangulation {
   }
 
  private:
-  int64_t turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) const {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-  }
   int side(uint32_t a, uint32_t b, uint32_t c) const {
-    const int64_t t = turn(point_[a], point_[b], point_[c]);
+    const Int128 t = turn(point_[a], point_[b], point_[c]);
     return t > 0 ? 1 : t < 0 ? -1 : 0;
   }
 
@@ -178,9 +195,7 @@ class PlaneTriangulation {
     const Quad q = quad(e);
     if (side(q.a, q.b, q.c) == 0) return true;
     const PlanePoint &a = point_[q.a], &b = point_[q.b], &c = point_[q.c], &d = point_[q.d];
-    const auto lifted = [&](const PlanePoint& p) { return (p.x - d.x) * (p.x - d.x) + (p.y - d.y) * (p.y - d.y); };
-    return Int128(lifted(a)) * turn(d, b, c) + Int128(lifted(b)) * turn(d, c, a) + Int128(lifted(c)) * turn(d, a, b) >
-           0;
+    return is_in_circle(a, b, c, d);
   }
 
   /// Result: the ends of the new edge. The apex of both triangles is then their last corner.

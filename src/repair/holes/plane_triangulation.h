@@ -12,7 +12,7 @@ namespace isoshell {
 struct PlanePoint {
   int64_t x, y;
 };
-constexpr int64_t kLargestInPlane = int64_t(1) << 28;
+constexpr int64_t kLargestInPlane = int64_t(1) << 40;
 
 /// Fills what is inside of the closed lines among `lines` with triangles that turn to the left. Every line between two
 /// points is an edge of them; other edges are Delaunay. Decided exactly. None where two points are one, lines cross, or
