@@ -1,6 +1,7 @@
 // What is measured on the way of a run, and said of its input and its result.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <map>
@@ -43,6 +44,9 @@ struct FeatureReport {
   double kept_length_world = 0;  ///< of these the length that the result has as edges
   double passed_over_world = 0;  ///< length of sharp edges that were not taken for creases: of scans, or too short
   std::vector<LostCurve> lost;   ///< in the order of the curves, after the lines
+
+  /// More than a few short edges, on an input of this area.
+  bool passes_over_much(double area_world) const { return passed_over_world > 2 * std::sqrt(area_world); }
 };
 
 struct StageTime {

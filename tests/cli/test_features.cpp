@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "geometry/world_vector.h"
 #include "isoshell/io/polyline_file.h"
 #include "support/catch.h"
 #include "support/refusals.h"
+#include "voxel/random.h"
 
 using namespace isoshell;
 using namespace isoshell::cli;
@@ -46,6 +48,21 @@ TEST_CASE("features: lines of a file become edges, and what is off the surface i
   CHECK(off.status == 0);
   const Json only = Json::parse(folder.content("s.json"));
   CHECK(only["features"]["curves"] == only["features"]["lines"]);
+}
+
+TEST_CASE("features: sharp edges that are taken for noise are told of, unless there are few", "[cli][features]") {
+  Folder folder;
+  TriangleSoup rough = shapes::sphere({0, 0, 0}, 1, 40);
+  for (size_t v = 0; v < rough.vertices.size(); ++v) {
+    const double out = 1 + .08 * (double(random_bits(3, v) % 1001) / 1000 - .5);
+    rough.vertices[v] = out * rough.vertices[v];
+  }
+  folder.write_off("rough.off", rough);
+  const auto r = folder.run("rough.off out.ply" + kQuick);
+  CHECK(r.status == 0);
+  CHECK(contains(r.err, " of sharp edges taken for noise (--features DEG keeps them), "));
+  write_box(folder);
+  CHECK(!contains(folder.run("box.off out.ply" + kQuick).err, "taken for noise"));
 }
 
 TEST_CASE("features: files of lines that cannot be used are refused", "[cli][features]") {
