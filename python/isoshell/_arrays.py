@@ -80,6 +80,14 @@ def _plain(argument: str, array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     return array
 
 
+def axes_of(argument: str, value: Any) -> list[bool]:
+    """Whether the axes x, y and z are among those named."""
+    names = set(filter(None, value.split(","))) if isinstance(value, str) else None
+    if names is None or not names <= {"x", "y", "z"}:
+        raise Error(f'{argument} is {value!r}; give axes, "x", "y" or "z", as in "x,y"')
+    return [axis in names for axis in "xyz"]
+
+
 def triple_of(argument: str, value: Any) -> tuple[float, float, float]:
     """One number for all axes, or three."""
     import numpy as np

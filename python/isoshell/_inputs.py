@@ -146,15 +146,19 @@ class Volume:
             faces; "cell": the same half a voxel farther out, as for values in the middle of voxels; "open": at the
             outermost values, with a border, which boundary="keep" keeps. None is "cell" for booleans, for others "open"
             with boundary="keep" and "sample" without.
+        periodic: axes of the array, as "x,y,z", along which it goes on with its first values, as a gyroid does: the
+            result is one period, a region with the label 1, and opposite sides have the same triangles, translated.
+            It has creases at its sides alone.
     """
 
     def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None,
-                 sides: Optional[str] = None) -> None:
+                 sides: Optional[str] = None, periodic: str = "") -> None:
         self.values = values
         self.spacing = spacing
         self.origin = origin
         self.velocities = velocities
         self.sides = sides
+        self.periodic = periodic
 
     def __repr__(self) -> str:
         return f"<isoshell.Volume: {lattice_text(self.values)}, spacing {self.spacing}, origin {self.origin}>"

@@ -8,7 +8,7 @@ import os
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple
 
 from . import _isoshell
-from ._arrays import array_of, masked_array_of, triple_of
+from ._arrays import array_of, axes_of, masked_array_of, triple_of
 from ._errors import Error, warn
 from ._inputs import lattice_text
 from ._paths import path_text
@@ -95,7 +95,7 @@ def lattice_of(labels: Labels) -> _isoshell.LabelLattice:
     names = {label_of("a key of names", label): _name(label, name) for label, name in labels.names.items()}
     return _isoshell.LabelLattice(origin, steps, label_of("background", labels.background), names,
                                   label_of("smallest_island", labels.smallest_island),
-                                  _smoothing(labels.smoothing), _axes(labels.periodic))
+                                  _smoothing(labels.smoothing), axes_of("periodic", labels.periodic))
 
 
 def _smoothing(value: Any) -> float:
@@ -103,13 +103,6 @@ def _smoothing(value: Any) -> float:
     if not is_number or not (value == 0 or LEAST_SMOOTHING <= value <= 1):
         raise Error(f"smoothing is {value!r}; it must be a number from {LEAST_SMOOTHING} to 1, or 0 for the faces of voxels")
     return float(value)
-
-
-def _axes(periodic: Any) -> list[bool]:
-    names = set(filter(None, periodic.split(","))) if isinstance(periodic, str) else None
-    if names is None or not names <= {"x", "y", "z"}:
-        raise Error(f'periodic is {periodic!r}; give axes, "x", "y" or "z", as in "x,y"')
-    return [axis in names for axis in "xyz"]
 
 
 def _of_spacing(spacing: Any, origin: Any) -> tuple[Triple, list[Triple]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequence, Tuple, Union
 
-from ._arrays import array_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, shape_of, triple_of
+from ._arrays import array_of, axes_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, shape_of, triple_of
 from ._exchange import format_of, taken
 from ._errors import Error
 from ._inputs import Mesh, Points, Volume
@@ -151,7 +151,8 @@ def _source_of(given: Any) -> Source:
         if given.sides not in (None, "sample", "cell", "open"):
             raise Error(f'sides must be "sample", "cell" or "open", and is {given.sides!r}')
         is_mask = is_true_or_false(given)
-        return Source.volume(*_lattice_of("volume", given), given.sides or ("cell" if is_mask else ""), is_mask)
+        sides = given.sides or ("cell" if is_mask and not given.periodic else "")
+        return Source.volume(*_lattice_of("volume", given), sides, is_mask, axes_of("periodic", given.periodic))
     if isinstance(given, Labels):
         return Source.labels(values_of(given), lattice_of(given))
     if isinstance(given, (tuple, list)) and len(given) == 2:

@@ -136,10 +136,10 @@ VolumeSides sides_named(const std::string& name, Boundary boundary) {
 }
 
 Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin, const std::string& sides,
-              bool is_mask) {
+              bool is_mask, const std::array<bool, 3>& periodic) {
   const DenseVolume v = dense_volume("volume", values, spacing, origin);
   return {"",
-          [v, sides, is_mask](const RunRequest& request, const Context& context) {
+          [v, sides, is_mask, periodic](const RunRequest& request, const Context& context) {
             refuse_label_options(request);
             const Boundary boundary = request.options.values.boundary;
             const VolumeReadOptions options{"",
@@ -148,7 +148,8 @@ Source volume(const AnyArray& values, const Triple& spacing, const Triple& origi
                                             volume_creases(request.options.values.features),
                                             sides_named(sides, boundary),
                                             is_mask,
-                                            boundary == Boundary::keep};
+                                            boundary == Boundary::keep,
+                                            periodic};
             return input_of(v, "volume", options, request.tell);
           },
           nb::cast(values),
@@ -251,10 +252,11 @@ void bind_source(nb::module_& m) {
                           "Source"))
       .def_static("points", points, nb::arg("positions"), nb::arg("normals").none(),
                   nb::sig("def points(positions: typing.Any, normals: typing.Any) -> Source"))
-      .def_static("volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"), nb::arg("sides"),
-                  nb::arg("is_mask"),
-                  nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
-                          "float, float], sides: str, is_mask: bool) -> Source"))
+      .def_static(
+          "volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"), nb::arg("sides"),
+          nb::arg("is_mask"), nb::arg("periodic"),
+          nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
+                  "float, float], sides: str, is_mask: bool, periodic: collections.abc.Sequence[bool]) -> Source"))
       .def_static("labels", labels, nb::arg("values"), nb::arg("lattice"),
                   nb::sig("def labels(values: typing.Any, lattice: LabelLattice) -> Source"))
       .def("set_velocities_of_vertices", set_velocities_of_vertices, nb::arg("velocities"), nb::arg("vertices"),

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "core/parallel_ranges.h"
+#include "geometry/common_step.h"
 #include "implicit/volumes/dense_field.h"
 #include "implicit/volumes/field_sharpness.h"
 #include "implicit/volumes/iso_surface.h"
@@ -123,6 +125,58 @@ void check_map(const ScalarField& field) {
                 field.title() + " has a transform that is not finite or has no inverse");
 }
 
+double step_world(const DenseVolume& volume) {
+  const WorldPoint& s = volume.spacing_world;
+  return common_step_world({s.x, s.y, s.z}, {volume.size[0], volume.size[1], volume.size[2]});
+}
+
+double coordinate(const WorldPoint& p, size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+/// Whether options.is_periodic names an axis. Throws: usage where it does, for an array with a single value along an
+/// axis, with spacings that are not whole multiples of the shortest one, or whose sides are not those of its samples.
+bool check_periodic(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options) {
+  const auto& axes = options.is_periodic;
+  if (std::none_of(axes.begin(), axes.end(), [](bool is) { return is; })) return false;
+  const auto refuse = [&](const std::string& what) { throw Error(ErrorCode::usage, "read", name + ": " + what); };
+  if (options.sides != VolumeSides::sample)
+    refuse("a periodic volume is closed at its samples; leave out sides and boundary=\"keep\"");
+  if (*std::min_element(volume.size, volume.size + 3) < 2)
+    refuse("a periodic volume has two values or more along each axis");
+  if (step_world(volume) == 0)
+    refuse("a periodic volume has spacings that are whole multiples of the shortest one; resample it");
+  return true;
+}
+
+/// Says of the surface of such a field that it is that of one solid, region 1, which triangles lie on its sides, and
+/// how long its periods are.
+void set_periodic_regions(const DenseVolume& volume, const VolumeReadOptions& options, TriangleSoup& surface) {
+  FaceRegions& regions = surface.regions;
+  regions.are_of_voxels = true;
+  regions.voxel_size_world = step_world(volume);
+  regions.labels.assign(surface.triangles.size(), {1, 0});
+  regions.side.assign(surface.triangles.size(), 0);
+  double low[3], high[3];
+  double* const period_world[3] = {&regions.period_world.x, &regions.period_world.y, &regions.period_world.z};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const bool is_periodic = options.is_periodic[axis];
+    const double spacing = coordinate(volume.spacing_world, axis);
+    low[axis] = coordinate(volume.origin_world, axis);
+    high[axis] = spacing * double(is_periodic ? volume.size[axis] : volume.size[axis] - 1) + low[axis];
+    if (is_periodic) *period_world[axis] = spacing * double(volume.size[axis]);
+  }
+  for_each_index(size_t(0), surface.triangles.size(), [&](size_t t) {
+    const auto lies_at = [&](size_t axis, double place) {
+      const auto& corners = surface.triangles[t];
+      return std::all_of(corners.begin(), corners.end(),
+                         [&](uint32_t v) { return coordinate(surface.vertices[v], axis) == place; });
+    };
+    for (size_t axis = 0; axis < 3; ++axis)
+      regions.side[t] = uint8_t(lies_at(axis, low[axis])    ? 2 * axis + 1
+                                : lies_at(axis, high[axis]) ? 2 * axis + 2
+                                                            : regions.side[t]);
+  });
+}
+
 }  // namespace
 
 TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info) {
@@ -143,8 +197,16 @@ TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& opti
 
 TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info) {
-  DenseField field(volume, name, options);
-  return described_surface_of(field, options, info);
+  if (!check_periodic(volume, name, options)) {
+    DenseField field(volume, name, options);
+    return described_surface_of(field, options, info);
+  }
+  VolumeReadOptions rounded = options;
+  rounded.creases = VolumeCreases::none;
+  DenseField field(volume, name, rounded);
+  TriangleSoup surface = described_surface_of(field, rounded, info);
+  set_periodic_regions(volume, options, surface);
+  return surface;
 }
 
 }  // namespace isoshell

@@ -36,6 +36,10 @@ struct VolumeReadOptions {
   /// Without an isovalue: distances jump where a grid holds one side of an open surface alone, or was clipped, and the
   /// surface is open there.
   bool keep_open = false;
+  /// Of an array with samples on its sides: along which axes it goes on with its first values. The surface is that of
+  /// one period, which those values end again, and has the regions of one solid, whose opposite sides get the same
+  /// triangles. It has no creases but at its sides.
+  std::array<bool, 3> is_periodic{false, false, false};
 };
 
 /// What the values of a grid were taken for.

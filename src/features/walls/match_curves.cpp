@@ -57,7 +57,7 @@ class CurveMatcher : public PeriodicMesh {
     const RegionTriangle of = triangles()[t];
     const uint32_t u = of.corner[edge], v = of.corner[(edge + 1) % 3];
     const uint32_t home = lookup_.copy_in(vertex(u).home, of.patch);
-    if (of.curve[edge] != kNone || home == kNone) return;
+    if (of.curve[edge] != kNone || home == kNone || at(u) == at(v)) return;
     RegionVertex middle = vertex(u);
     middle.kind = Kind::free;
     middle.position = sides().inside(.5 * (at(u) + at(v)), kOffPlane * length(at(v) - at(u)));
@@ -66,11 +66,7 @@ class CurveMatcher : public PeriodicMesh {
   }
   bool lies_in_plane(const RegionTriangle& t) const {
     if (t.is_gone() || sides().of_patch(t.patch) > 0) return false;
-    for (int side = 1; side <= 6; ++side)
-      if (sides().has(side) && std::all_of(t.corner.begin(), t.corner.end(),
-                                           [&](uint32_t v) { return at(v) == sides().on_plane(side, at(v)); }))
-        return true;
-    return false;
+    return sides().hold({at(t.corner[0]), at(t.corner[1]), at(t.corner[2])});
   }
 
   /// Whether anything was changed.

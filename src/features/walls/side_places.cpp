@@ -61,6 +61,14 @@ WorldPoint PeriodicSides::inside(WorldPoint p, double way_q8) const {
   return p;
 }
 
+bool PeriodicSides::hold(const std::array<WorldPoint, 3>& corners) const {
+  for (int side = 1; side <= 6; ++side)
+    if (has(side) &&
+        std::all_of(corners.begin(), corners.end(), [&](const WorldPoint& p) { return p == on_plane(side, p); }))
+      return true;
+  return false;
+}
+
 WorldPoint PeriodicSides::period_q8(int axis) const {
   const double period = *plane_q8_[size_t(2 * axis + 2)] - *plane_q8_[size_t(2 * axis + 1)];
   return {axis == 0 ? period : 0, axis == 1 ? period : 0, axis == 2 ? period : 0};

@@ -27,6 +27,8 @@ class PeriodicSides {
   WorldPoint within(WorldPoint p) const;
   /// A point in planes, so far from them.
   WorldPoint inside(WorldPoint p, double way_q8) const;
+  /// Whether a triangle lies in one of the planes.
+  bool hold(const std::array<WorldPoint, 3>& corners) const;
   /// From the low side of an axis to its high one.
   WorldPoint period_q8(int axis) const;
 

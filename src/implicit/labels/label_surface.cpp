@@ -8,6 +8,7 @@
 
 #include "core/parallel_ranges.h"
 #include "core/wall_memory.h"
+#include "geometry/common_step.h"
 #include "geometry/world_vector.h"
 #include "implicit/labels/absorb_islands.h"
 #include "implicit/labels/count_walls.h"
@@ -73,22 +74,16 @@ WorldPoint to_world(const LabelVolume& volume, const PointQ8& p) {
          vox(p.z) * volume.step_world[2];
 }
 
-/// See FaceRegions::voxel_size_world. What headers of files round is let pass.
+/// See FaceRegions::voxel_size_world.
 double voxel_size_world(const LabelVolume& volume) {
-  constexpr double kMostOffVox = 1e-4;  // over the whole volume: nearer to points of the lattice than to others
   std::array<double, 3> size{};
   for (size_t i = 0; i < 3; ++i) {
     const WorldPoint& step = volume.step_world[i];
     const double along[3] = {std::abs(step.x), std::abs(step.y), std::abs(step.z)};
     size[i] = *std::max_element(along, along + 3);
-    if ((along[0] + along[1] + along[2] - size[i]) * volume.size_vox[i] > kMostOffVox * size[i]) return 0;
+    if ((along[0] + along[1] + along[2] - size[i]) * volume.size_vox[i] > kMostOffStepVox * size[i]) return 0;
   }
-  const double least = *std::min_element(size.begin(), size.end());
-  for (size_t i = 0; i < 3; ++i) {
-    const double multiple = size[i] / least;
-    if (std::abs(multiple - std::round(multiple)) * volume.size_vox[i] > kMostOffVox) return 0;
-  }
-  return least;
+  return common_step_world(size, {volume.size_vox[0], volume.size_vox[1], volume.size_vox[2]});
 }
 
 /// The axis of the world that is nearest to one of the array.

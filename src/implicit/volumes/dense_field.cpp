@@ -11,6 +11,8 @@
 namespace isoshell {
 namespace {
 
+constexpr double kOffPoints = .125;  // of periodic sides, whose vertices all stay: nearer ones would be one
+
 int32_t blocks_along(int64_t size) { return int32_t((size + kFieldBlock - 1) / kFieldBlock); }
 
 /// Where both sides of an array are at its only value, the surface has to end farther out.
@@ -29,18 +31,20 @@ struct BlockRange {
 }  // namespace
 
 DenseField::DenseField(const DenseVolume& volume, const std::string& volume_name, const VolumeReadOptions& options)
-    : volume_(volume), padding_(ends_half_out(volume, options.sides) ? 1 : 0) {
+    : volume_(volume), is_periodic_(options.is_periodic), padding_(ends_half_out(volume, options.sides) ? 1 : 0) {
   file = volume_name;
   name = "values";
   grid_class = "unknown";
-  for (int a = 0; a < 3; ++a) size_[a] = volume.size[a] + 2 * padding_;
+  for (int a = 0; a < 3; ++a) size_[a] = volume.size[a] + (is_periodic_[size_t(a)] ? 1 : 2 * padding_);
   check(volume_name);
   const WorldPoint &spacing = volume.spacing_world, &origin = volume.origin_world;
   to_world = lattice_map(spacing, origin - double(padding_) * spacing);
+  const bool is_periodic = is_periodic_[0] || is_periodic_[1] || is_periodic_[2];
   sides = FieldSides{{0, 0, 0},
                      {int32_t(size_[0]) - 1, int32_t(size_[1]) - 1, int32_t(size_[2]) - 1},
                      options.sides != VolumeSides::open,
-                     padding_ > 0};
+                     padding_ > 0,
+                     is_periodic ? kOffPoints : 0};
   double low = INFINITY, high = -INFINITY;
   split_into_blocks(low, high);
   if (!(low <= high)) refuse_unknown();
@@ -154,6 +158,11 @@ std::unique_ptr<ScalarField> DenseField::continued() const {
 float DenseField::beyond(const int64_t point[3]) const {
   int64_t nearest[3], mirrored[3];
   for (int a = 0; a < 3; ++a) {
+    if (is_periodic_[size_t(a)]) {
+      const int64_t period = volume_.size[a];
+      nearest[a] = mirrored[a] = (point[a] % period + period) % period;
+      continue;
+    }
     nearest[a] = std::clamp<int64_t>(point[a], 0, size_[a] - 1);
     mirrored[a] = std::clamp<int64_t>(2 * nearest[a] - point[a], 0, size_[a] - 1);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,7 +27,9 @@ class DenseField : public ScalarField {
   /// Of a lattice point; those around the array have the value of the nearest one in it.
   float at(int64_t x, int64_t y, int64_t z) const {
     const auto in_array = [&](int64_t i, int axis) {
-      return std::clamp<int64_t>(i - padding_, 0, volume_.size[axis] - 1) * volume_.stride[axis];
+      const int64_t size = volume_.size[axis];
+      const int64_t place = is_periodic_[size_t(axis)] ? i % size : std::clamp<int64_t>(i - padding_, 0, size - 1);
+      return place * volume_.stride[axis];
     };
     return volume_.values[in_array(x, 0) + in_array(y, 1) + in_array(z, 2)];
   }
@@ -41,9 +44,10 @@ class DenseField : public ScalarField {
   [[noreturn]] void refuse_value(Voxel block) const;
 
   DenseVolume volume_;
-  int32_t padding_;       ///< lattice points around the array
-  int64_t size_[3];       ///< with these
-  bool goes_on_ = false;  ///< beyond its sides
+  std::array<bool, 3> is_periodic_;  ///< along these axes the last point is the first one again
+  int32_t padding_;                  ///< lattice points around the array
+  int64_t size_[3];                  ///< with these
+  bool goes_on_ = false;             ///< beyond its sides
   std::vector<Voxel> blocks_;
   std::vector<FieldTile> tiles_;
 };

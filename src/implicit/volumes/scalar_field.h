@@ -1,6 +1,7 @@
 // A sparse scalar field on an integer lattice, whatever file it came from: blocks of 8^3 values and tiles of one value.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -63,12 +64,21 @@ struct FieldSides {
   Voxel first, last;        ///< the outermost lattice points
   bool are_closed = true;   ///< by faces in the planes of these points
   bool are_halved = false;  ///< the outermost cells are half as thick as others
+  double off_points = 0;    ///< in cells: how far crossings on edges with ends on a side stay from these
 
   bool hold(Voxel v) const {
     return v.x >= first.x && v.y >= first.y && v.z >= first.z && v.x <= last.x && v.y <= last.y && v.z <= last.z;
   }
   /// Whether all corners of the cell behind its smallest one are held.
   bool hold_cell(Voxel v) const { return hold(v) && v.x < last.x && v.y < last.y && v.z < last.z; }
+  bool have_on_plane(Voxel v) const {
+    return v.x == first.x || v.y == first.y || v.z == first.z || v.x == last.x || v.y == last.y || v.z == last.z;
+  }
+  /// Where the surface passes an edge, as a part of it.
+  double off_points_of(Voxel from, int axis, double part) const {
+    const Voxel to{from.x + (axis == 0), from.y + (axis == 1), from.z + (axis == 2)};
+    return have_on_plane(from) || have_on_plane(to) ? std::clamp(part, off_points, 1 - off_points) : part;
+  }
   bool hold_block(Voxel origin) const {
     return hold(origin) && hold({origin.x + kFieldBlock, origin.y + kFieldBlock, origin.z + kFieldBlock});
   }

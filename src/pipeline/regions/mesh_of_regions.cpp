@@ -11,7 +11,10 @@
 #include "features/cutting/cut_surface.h"
 #include "features/mesh/refine_mesh.h"
 #include "features/walls/coarsen_walls.h"
+#include "features/walls/periodic_sides.h"
+#include "features/walls/side_places.h"
 #include "isoshell/error.h"
+#include "isoshell/readable.h"
 #include "pipeline/defects/inverted_regions.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/patches/feature_report.h"
@@ -88,6 +91,28 @@ bool coarsen(const PreparedSurface& p, const PatchOptions& in_patches, MeshedPat
   return is_made;
 }
 
+/// Such triangles are on one of two opposite sides alone.
+void warn_of_walls_in_sides(const CutSurface& cut, const JoinedPatches& joined, Run& run) {
+  if (!has_periodic_sides(cut)) return;
+  const PeriodicSides sides(cut);
+  int64_t count = 0;
+  WorldPoint first{0, 0, 0};
+  for (int64_t t = 0; t < joined.mesh.triangles.size(); ++t) {
+    if (sides.of_patch(joined.features.patch[size_t(t)]) > 0) continue;
+    const auto& [a, b, c] = joined.mesh.triangles[t];
+    const auto at_q8 = [&](uint32_t v) -> WorldPoint {
+      const PointQ8& p = joined.mesh.position[v];
+      return {double(p.x), double(p.y), double(p.z)};
+    };
+    if (!sides.hold({at_q8(a), at_q8(b), at_q8(c)})) continue;
+    if (count++ == 0) first = cut.frame.to_world(joined.mesh.position[a]);
+  }
+  if (count > 0)
+    run.warn(counted(count, "triangle of a wall lies", "triangles of walls lie") +
+             " in a periodic side, the first near " + readable_place(first, cut.frame) +
+             ": the opposite side has none there");
+}
+
 TriangleMesh mesh_of(const PreparedSurface& p, JoinedPatches& joined, Run& run) {
   const CutSurface& cut = *p.cut;
   if (p.walls->regions.are_of_voxels)
@@ -96,6 +121,7 @@ TriangleMesh mesh_of(const PreparedSurface& p, JoinedPatches& joined, Run& run) 
       restore_volumes(cut, *p.walls, joined, run.context);
       open_wedges(*p.walls, cut, joined, run.context);  // what closed again, by little
     });
+  warn_of_walls_in_sides(cut, joined, run);
   TriangleMesh mesh = to_world(joined.mesh, p.surface.frame);
   mesh.features = std::move(joined.features);
   if (!p.walls->regions.are_of_voxels) put_on_planes(cut, *p.walls, joined.home.view(), mesh, run.context);

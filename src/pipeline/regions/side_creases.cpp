@@ -45,8 +45,7 @@ class SideParts {
     EdgeList found;
     for_each_crease([&](uint32_t a, uint32_t b, View<const EdgeSide> sides) {
       const bool is_wide = std::any_of(sides.begin(), sides.end(), [&](const EdgeSide& of) {
-        return regions_.is_periodic_side(side_[of.half_edge / 3]) ||
-               width_of(area_[part_of(of)], border[part_of(of)]) >= narrowest_world;
+        return regions_.is_periodic() || width_of(area_[part_of(of)], border[part_of(of)]) >= narrowest_world;
       });
       if (is_wide) found.push_back({a, b});
     });
