@@ -20,6 +20,8 @@ std::string readable_place(const WorldPoint& at, const WorldBox& box);
 std::string readable_place(const WorldPoint& at, const LatticeFrame& frame);
 /// The same with as many digits as all bits need.
 std::string exact_place(const WorldPoint& at);
+/// A length in world units, whatever these are, as "0.0123" or "193": to three digits.
+std::string readable_length(double length_world);
 /// Bytes as "1.5 GiB".
 std::string readable_bytes(int64_t bytes);
 

@@ -23,7 +23,7 @@ struct FaceRegions {
   /// it lies in, or the background. Empty: no regions.
   std::vector<std::array<int32_t, 2>> labels;
   int32_t background = 0;      ///< the label of what is no region
-  bool are_of_voxels = false;  ///< walls between voxels, which have no creases that are more than their steps
+  bool are_of_voxels = false;  ///< walls of a volume, which have no creases that are more than steps of its voxels
   /// Between such voxels the shortest step, where they lie along the axes of the world and the other steps are whole
   /// multiples of it; 0 where not.
   double voxel_size_world = 0;

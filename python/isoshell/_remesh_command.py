@@ -172,9 +172,9 @@ def _summary(result: Result) -> str:
     kind = "closed" if topology["closed"] else "not closed"
     if topology["closed"] and topology["genus"] is not None:  # regions have none together
         kind = f"closed 2-manifold of genus {topology['genus']}"
-    passed_over = result.report["features"]["passed_over"]
-    noise = (f", {passed_over:.1f} of sharp edges taken for noise (--features DEG keeps them)"
-             if passed_over > 2 * result.report["input"]["area"] ** .5 else "")
+    features = result.report["features"]
+    noise = (f", {features['passed_over']:.3g} of sharp edges taken for noise (--features DEG keeps them)"
+             if features["passes_over_much"] else "")
     return (f"{len(result.vertices)} vertices, {len(result.faces)} triangles, {topology['components']} "
             f"component{'' if topology['components'] == 1 else 's'}, {kind}, smallest angle "
             f"{quality['theta_min_deg']:.1f}{noise}")

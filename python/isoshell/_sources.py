@@ -150,9 +150,9 @@ def _source_of(given: Any) -> Source:
     if isinstance(given, Volume):
         if given.sides not in (None, "sample", "cell", "open"):
             raise Error(f'sides must be "sample", "cell" or "open", and is {given.sides!r}')
-        is_mask = is_true_or_false(given)
-        sides = given.sides or ("cell" if is_mask and not given.periodic else "")
-        return Source.volume(*_lattice_of("volume", given), sides, is_mask, axes_of("periodic", given.periodic))
+        is_mask, periodic = is_true_or_false(given), axes_of("periodic", given.periodic)
+        sides = given.sides or ("cell" if is_mask and not any(periodic) else "")
+        return Source.volume(*_lattice_of("volume", given), sides, is_mask, periodic)
     if isinstance(given, Labels):
         return Source.labels(values_of(given), lattice_of(given))
     if isinstance(given, (tuple, list)) and len(given) == 2:

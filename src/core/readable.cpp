@@ -59,6 +59,12 @@ std::string counted(int64_t count, const std::string& noun, const std::string& p
   return with_commas(count) + " " + (count == 1 ? noun : plural.empty() ? noun + "s" : plural);
 }
 
+std::string readable_length(double length_world) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", length_world);
+  return text;
+}
+
 std::string readable_bytes(int64_t bytes) {
   const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   double value = double(bytes);

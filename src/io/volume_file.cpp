@@ -15,6 +15,7 @@
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
+#include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
@@ -138,7 +139,7 @@ bool check_periodic(const DenseVolume& volume, const std::string& name, const Vo
   const auto& axes = options.is_periodic;
   if (std::none_of(axes.begin(), axes.end(), [](bool is) { return is; })) return false;
   const auto refuse = [&](const std::string& what) { throw Error(ErrorCode::usage, "read", name + ": " + what); };
-  if (options.sides != VolumeSides::sample)
+  if (options.sides != VolumeSides::sample || options.keep_open)
     refuse("a periodic volume is closed at its samples; leave out sides and boundary=\"keep\"");
   if (*std::min_element(volume.size, volume.size + 3) < 2)
     refuse("a periodic volume has two values or more along each axis");
@@ -205,6 +206,13 @@ TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& nam
   rounded.creases = VolumeCreases::none;
   DenseField field(volume, name, rounded);
   TriangleSoup surface = described_surface_of(field, rounded, info);
+  if (info.kind != VolumeKind::at_value)
+    throw Error(ErrorCode::usage, "read", name + ": a periodic volume has values of both signs; give an isovalue");
+  if (info.open_cells > 0)
+    throw Error(
+        ErrorCode::usage, "read",
+        name + ": a periodic volume has values that are numbers all along its surface, and this one has none near " +
+            exact_place(info.first_open_world));
   set_periodic_regions(volume, options, surface);
   return surface;
 }

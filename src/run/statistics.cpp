@@ -209,7 +209,7 @@ Json distance_json(const std::optional<MeshDistance>& d) {
 }
 
 /// Creases, seams, lines and borders of the input, and whether the result has them.
-Json features_json(const FeatureReport& f) {
+Json features_json(const FeatureReport& f, double area_world) {
   Json lost = Json::array();
   for (const LostCurve& curve : f.lost)
     lost.push_back({{"index", curve.index},
@@ -229,6 +229,7 @@ Json features_json(const FeatureReport& f) {
           {"length", f.length_world},
           {"kept_length", f.kept_length_world},
           {"passed_over", f.passed_over_world},
+          {"passes_over_much", f.passes_over_much(area_world)},
           {"given_up", known(f.given_up)},
           {"on_sheet", known(f.on_sheet)},
           {"lost", lost}};
@@ -345,7 +346,7 @@ std::string statistics_json(const RunRecord& r) {
   j["topology"] = topology_json(r);
   j["regions"] = regions_of_run_json(r);
   j["quality"] = quality_json(r);
-  j["features"] = features_json(r.report.features);
+  j["features"] = features_json(r.report.features, r.report.input.topology.area_world);
   j["coherence"] = coherence_json(r);
   j["borders"] = borders_json(r.borders);
   j["sizing"] = sizing_json(r.report.sizing);

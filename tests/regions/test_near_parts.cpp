@@ -150,7 +150,7 @@ TEST_CASE("parts: nothing is said of near parts that are made one as they should
     CHECK(find_part_regions(boxes, {"cells", near, near}, context).warnings.empty());
 }
 
-TEST_CASE("parts: where cuts do not end with all that is near made one, less is, and a warning says how much",
+TEST_CASE("parts: where cuts do not end with what is near made one, only what meets is, and a warning says so",
           "[regions][unit]") {
   constexpr int kBars = 11;
   TriangleSoup bars;  // each turned by a share of 180 degrees, and tilted by .003 rad, more than the one before

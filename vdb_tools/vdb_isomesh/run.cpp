@@ -91,7 +91,8 @@ void tell_result(const RunRecord& record, Console& console) {
   if (record.quality) text << "smallest angle " << record.quality->theta_min_deg << ", ";
   const FeatureReport& features = record.report.features;
   if (features.passes_over_much(record.report.input.topology.area_world))
-    text << features.passed_over_world << " of sharp edges taken for noise (--features DEG keeps them), ";
+    text << readable_length(features.passed_over_world)
+         << " of sharp edges taken for noise (--features DEG keeps them), ";
   text << record.total_ms / 1000 << " s";
   console.result(text.str());
 }

@@ -35,7 +35,10 @@ def test_opposite_sides_of_a_periodic_field_have_the_same_triangles(periodic, ve
 
 
 def test_a_periodic_field_without_two_sides_of_samples_is_refused():
+    holed = waves(8)
+    holed[4, 4, 4] = np.nan
     for values, how, message in ((waves(8), {"sides": "cell"}, "is closed at its samples"),
+                                 (holed, {}, "values that are numbers all along its surface"),
                                  (waves(8)[:, :1], {}, "two values or more along each axis"),
                                  (waves(8), {"spacing": (1, 1, 1.3)}, "whole multiples of the shortest one"),
                                  (waves(8), {"periodic": "w"}, "periodic is")):

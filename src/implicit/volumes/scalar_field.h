@@ -64,7 +64,7 @@ struct FieldSides {
   Voxel first, last;        ///< the outermost lattice points
   bool are_closed = true;   ///< by faces in the planes of these points
   bool are_halved = false;  ///< the outermost cells are half as thick as others
-  double off_points = 0;    ///< in cells: how far crossings on edges with ends on a side stay from these
+  double off_points = 0;    ///< in cells: how far crossings on edges with an end on any side stay from their ends
 
   bool hold(Voxel v) const {
     return v.x >= first.x && v.y >= first.y && v.z >= first.z && v.x <= last.x && v.y <= last.y && v.z <= last.z;

@@ -15,7 +15,7 @@ namespace {
 
 // What is bent through points within reach may come into reach of others, and again, where many surfaces are nearly
 // one. After some rounds only what meets is cut, and what is bent then is bent by as little as points are rounded by;
-// what still meets after that, by more from round to round. Where contacts grow in number instead, faces cross at small
+// what still meets then, by more from round to round. Where contacts grow in number instead, faces cross at small
 // angles: all is begun again, with only what meets.
 constexpr double kReachSteps = 128 * kFine;
 constexpr double kMostReachSteps = kFine * (1 << 24);  // a 16th of the longest side; boxes are numbers of 32 bits
@@ -26,7 +26,7 @@ constexpr double kReachGrowth = 4;   // from round to round, of what meets
 
 // Of all rounds with one reach. Parts that touch or overlap take up to 40 pairs and two contacts a triangle; soups in
 // one plane would take thousands of times that.
-constexpr int64_t kLeastWork = 1 << 26, kWorkOfTriangle = 1 << 13;
+constexpr int64_t kLeastWork = 1 << 27, kWorkOfTriangle = 1 << 13;
 
 LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, const StepFrame& frame) {
   LatticeFaces faces;
@@ -125,9 +125,9 @@ ArrangedFaces result_of(LatticeFaces faces, const TriangleSoup& soup, const Weld
 }
 
 /// None, and a place where faces cross, when rounds do not come to an end, or take more work than they may.
-std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t work_left, StepPoint& failed_at,
+std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t& work_left, StepPoint& failed_at,
                                     const Context& context) {
-  std::array<size_t, 2> contacts_before{};  // of the last round and the one before that
+  std::array<size_t, 2> contacts_before{};  // of the last round and the one before that, while what is near is cut
   for (int round = 0; round < kMostRounds; ++round) {
     if (round == kNearEdgeRounds) faces.leaves_near_edges = true;
     if (round == kFullRounds && !faces.leaves_near) {
@@ -136,12 +136,16 @@ std::optional<LatticeFaces> cut_all(LatticeFaces faces, int64_t work_left, StepP
     }
     Contacts contacts = find_contacts(faces, work_left, context);
     if (!contacts.found.empty()) failed_at = faces.point[faces.face[contacts.found.front().pair[0]][0]];
-    const size_t count = contacts.found.size() + contacts.close.size();
-    const bool is_growing = round >= kFirstRounds && count > std::max(contacts_before[size_t(round % 2)], kFewContacts);
-    contacts_before[size_t(round % 2)] = count;
     work_left -= contacts.work();
-    if (work_left < 0 || (is_growing && !faces.leaves_near)) return {};
-    if (faces.leaves_near && round > 0) faces.reach_steps = std::min(kReachSteps, kReachGrowth * faces.reach_steps);
+    if (work_left < 0) return {};
+    if (!faces.leaves_near) {
+      const size_t count = contacts.found.size() + contacts.close.size();
+      size_t& before = contacts_before[size_t(round % 2)];
+      if (round >= kFirstRounds && count > std::max(before, kFewContacts)) return {};
+      before = count;
+    } else if (round > 0) {
+      faces.reach_steps = std::min(kReachSteps, kReachGrowth * faces.reach_steps);
+    }
     if (!contacts.close.empty()) {
       weld_close(faces, contacts);
     } else if (!contacts.found.empty()) {
@@ -169,21 +173,23 @@ std::optional<ArrangedFaces> arrange(const TriangleSoup& soup, WorldPoint& faile
     return apart;
   }
   unsettle_crossing(whole, groups.is_checked, context);
-  const int64_t most_work = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
+  int64_t work_left = kLeastWork + kWorkOfTriangle * int64_t(soup.triangles.size());
   std::vector<double> reaches = {kReachSteps, kLateReachSteps};
   if (whole.reach_steps > kReachSteps) reaches.insert(reaches.begin(), whole.reach_steps);
   for (const double reach_steps : reaches) {
     LatticeFaces faces = whole;
     faces.reach_steps = reach_steps;
-    const bool is_last = reach_steps == kLateReachSteps;
-    faces.leaves_near = is_last;
+    faces.leaves_near = reach_steps == kLateReachSteps;
+    const int64_t for_others = faces.leaves_near ? 0 : work_left / 2;
+    int64_t left = work_left - for_others;
     StepPoint at{0, 0, 0};
-    std::optional<LatticeFaces> cut = cut_all(std::move(faces), most_work, at, context);
+    std::optional<LatticeFaces> cut = cut_all(std::move(faces), left, at, context);
     if (cut) {
       ArrangedFaces result = result_of(std::move(*cut), soup, welded, box);
-      result.near_world = is_last ? 0 : groups.near_world * (reach_steps / whole.reach_steps);
+      result.is_as_wanted = reach_steps == whole.reach_steps;
       return result;
     }
+    work_left = for_others + std::max<int64_t>(0, left);
     if (reach_steps == whole.reach_steps) failed_at = frame.to_world(at);
   }
   return {};

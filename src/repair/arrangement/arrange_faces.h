@@ -28,7 +28,7 @@ struct ArrangedFaces {
   std::vector<uint32_t> source;  ///< per face the triangle of the soup that it is a part of, and turns like; ascending
   std::vector<uint8_t> is_cut;   ///< per triangle of the soup: it has faces, and not itself alone
   bool is_near = true;           ///< false: nothing was looked at, since the two groups are apart
-  double near_world = 0;         ///< as in ArrangedGroups; less where cuts did not end with that, 0: only what meets
+  bool is_as_wanted = true;      ///< false: cuts did not end with near_world, and only what meets was made one
 
   int64_t cut_faces() const { return std::count(is_cut.begin(), is_cut.end(), 1); }
 };

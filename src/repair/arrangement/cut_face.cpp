@@ -87,16 +87,15 @@ class Cut {
   }
 
   /// Whether the triangles made have this border. Points of edges may turn a low face over, or pass one another.
-  bool has_border(std::vector<Ends> border) const {
-    std::vector<Ends> edges;
+  bool has_border(const std::vector<Ends>& border) const {
+    std::vector<Ends> edges, turned;  // the same where each edge is passed both ways
     for (const Corners& t : made_)
       for (size_t i = 0; i < 3; ++i) edges.push_back({t[i], t[(i + 1) % 3]});
     for (const Ends& e : border) edges.push_back({e[1], e[0]});
-    border = edges;
-    for (Ends& e : border) std::swap(e[0], e[1]);
+    for (const Ends& e : edges) turned.push_back({e[1], e[0]});
     std::sort(edges.begin(), edges.end());
-    std::sort(border.begin(), border.end());
-    return edges == border;
+    std::sort(turned.begin(), turned.end());
+    return edges == turned;
   }
 
   /// Points of an edge are a little off it, so that three of them may be a triangle. Its longest edge is flipped: the

@@ -15,8 +15,8 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr double kMostOffSteps = 16 * kFine;  // what rounding leaves of a straight line, or a plane, from cut to cut
-constexpr double kRoundedSteps = 2 * kFine;   // what is left of a plane when its corners are put on the lattice
+constexpr double kMostOffSteps = 16 * kFine;  // what bends leave of a straight line, or a plane, from cut to cut
+constexpr double kRoundedSteps = 2 * kFine;   // what is left of a plane when its corners are numbers of 32 bits
 constexpr double kNearlyOne = .999;           // of the cosine between normals, before planes are compared
 
 /// An edge of a piece whose neighbour there is of another triangle; the piece is to the left of it.

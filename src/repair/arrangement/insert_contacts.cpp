@@ -13,7 +13,7 @@
 namespace isoshell::repair {
 namespace {
 
-constexpr double kMostJitterSteps = 8;
+constexpr double kMostJitterSteps = 8;  // which parts four points of a circle, and moves none over an edge
 
 class Cutter {
  public:

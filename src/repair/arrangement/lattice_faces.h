@@ -36,7 +36,7 @@ WorldPoint as_world(const Vector& v) {
   return {double(v.x), double(v.y), double(v.z)};
 }
 
-/// Positions of files are exact to this many steps or more: lengths that say what is made one are multiples.
+/// Positions of files are exact to this many steps or more: what is made one, and what is called flat, is given in it.
 constexpr int kFineBits = 12;
 constexpr double kFine = 1 << kFineBits;
 

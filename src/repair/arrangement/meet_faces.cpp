@@ -146,10 +146,10 @@ class FacePair {
     for (size_t s = 0; s < 2; ++s)
       for (size_t i = 0; i < 3; ++i) add_pass(s, i);
     if (to_.found.size() > before || !triangles_intersect_apart(corners_of(0), corners_of(1))) return;
-    bool is_low = false;  // the edges of such a face are near each other, and not where it is met
+    to_.crossing.push_back(number_);
+    // The edges of a low face are near each other, and none is where it is met: it has to vanish.
     if (faces_.leaves_near)
-      for (const uint32_t f : number_) is_low |= meet_itself(faces_, f, to_);
-    if (!is_low) to_.crossing.push_back(number_);
+      for (const uint32_t f : number_) meet_itself(faces_, f, to_);
   }
 
  private:
@@ -235,7 +235,8 @@ class FacePair {
   }
 
   void add_edges() {
-    const bool do_meet = !faces_.leaves_near_edges || triangles_intersect(corners_of(0), corners_of(1));
+    const bool do_meet =
+        faces_.leaves_near || !faces_.leaves_near_edges || triangles_intersect(corners_of(0), corners_of(1));
     for (size_t i = 0; i < 3; ++i)
       for (size_t k = 0; k < 3; ++k) {
         Ends d = edge_of(corner_[0], i), e = edge_of(corner_[1], k);

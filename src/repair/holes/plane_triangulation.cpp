@@ -32,7 +32,7 @@ Int128 turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   return Int128(b.x - a.x) * (c.y - a.y) - Int128(b.y - a.y) * (c.x - a.x);
 }
 
-/// Whether d is in the circle around abc, which turn to the left. Products have up to 166 bits: what one factor has
+/// Whether d is in the circle around abc, which turn to the left. Products have up to 163 bits: what one factor has
 /// above 2^40 and below that is summed by itself.
 bool is_in_circle(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c, const PlanePoint& d) {
   constexpr int kBits = 40;

@@ -210,12 +210,10 @@ ArrangedFaces arranged(const TriangleSoup& soup, double near_world, std::vector<
                  ", where very many of them cross at small angles; part them there, or make near ones one (--snap)"));
   if (faces->face.empty())
     throw Error(ErrorCode::nothing_to_mesh, "regions", "no face has an area: there is nothing to part regions");
-  if (faces->near_world < near_world)
-    warnings.push_back(sentence(faces->near_world > 0
-                                    ? sentence("what is nearer than ", faces->near_world, " was made one, and not")
-                                    : std::string("only what meets was made one, and not"),
-                                " what is nearer than ", near_world, ": that takes too many cuts near ", at.x, ' ',
-                                at.y, ' ', at.z, "; part the faces there, or give another --snap"));
+  if (!faces->is_as_wanted)
+    warnings.push_back(sentence("only what meets was made one, and not what is nearer than ", near_world,
+                                ": that takes too many cuts near ", at.x, ' ', at.y, ' ', at.z,
+                                "; part the faces there, or give another --snap"));
   return std::move(*faces);
 }
 
