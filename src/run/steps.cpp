@@ -62,7 +62,8 @@ class RunSteps::Run {
     const Book book{*this};
     const Metered metered(progress_.meter, context);
     return naming_written(written_, [&]() -> std::invoke_result_t<Work> {
-      if (record_.device.backend.empty()) record_.device = device_info(context);  // no time is lost where there is none
+      if (record_.device.backend == "cpu")
+        record_.device = device_info(context);  // no time is lost where there is none
       return work();
     });
   }
