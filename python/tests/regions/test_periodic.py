@@ -44,6 +44,11 @@ def test_a_periodic_field_without_two_sides_of_samples_is_refused():
                                  (waves(8), {"periodic": "w"}, "periodic is")):
         with pytest.raises(isoshell.Error, match=message):
             isoshell.remesh(isoshell.Volume(values, **{"periodic": "x", **how}), iso=0, vertices=300)
+    unsigned = np.abs(np.linalg.norm(np.mgrid[:24, :24, :24] - 11.5, axis=0) - 7)
+    for values, how, message in ((unsigned, {}, "values of both signs"),
+                                 (waves(8), {"boundary": "keep"}, "is closed at its samples")):
+        with pytest.raises(isoshell.Error, match=message):
+            isoshell.remesh(isoshell.Volume(values, periodic="x"), vertices=300, **how)
 
 
 def test_opposite_sides_of_periodic_labels_are_translated(tmp_path):

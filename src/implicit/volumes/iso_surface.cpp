@@ -326,7 +326,7 @@ class IsoSurface {
     double t = beside_crease ? beside_crease->place : crossing_on_edge(at[0], at[kWindowStride[axis]], inside_.iso);
     if (creases_) t = std::clamp(t, kCreaseEdgeEnd, 1 - kCreaseEdgeEnd);
     const Voxel o = cell_at(b, offset);
-    if (field_.sides) t = field_.sides->off_points_of(o, axis, t);
+    if (field_.sides) t = field_.sides->kept_off_points(o, axis, t);
     if (const auto end = end_at_side(field_, o, axis)) t = *end == o ? 0 : 1;
     return {o.x + (axis == 0 ? t : 0), o.y + (axis == 1 ? t : 0), o.z + (axis == 2 ? t : 0)};
   }

@@ -71,13 +71,15 @@ struct FieldSides {
   }
   /// Whether all corners of the cell behind its smallest one are held.
   bool hold_cell(Voxel v) const { return hold(v) && v.x < last.x && v.y < last.y && v.z < last.z; }
-  bool have_on_plane(Voxel v) const {
+  /// Whether a lattice point lies in the plane of a side.
+  bool have_in_plane(Voxel v) const {
     return v.x == first.x || v.y == first.y || v.z == first.z || v.x == last.x || v.y == last.y || v.z == last.z;
   }
-  /// Where the surface passes an edge, as a part of it.
-  double off_points_of(Voxel from, int axis, double part) const {
+  /// Where the surface passes the edge from a lattice point along an axis, as a part of that edge: as far from its ends
+  /// as off_points says.
+  double kept_off_points(Voxel from, int axis, double part) const {
     const Voxel to{from.x + (axis == 0), from.y + (axis == 1), from.z + (axis == 2)};
-    return have_on_plane(from) || have_on_plane(to) ? std::clamp(part, off_points, 1 - off_points) : part;
+    return have_in_plane(from) || have_in_plane(to) ? std::clamp(part, off_points, 1 - off_points) : part;
   }
   bool hold_block(Voxel origin) const {
     return hold(origin) && hold({origin.x + kFieldBlock, origin.y + kFieldBlock, origin.z + kFieldBlock});

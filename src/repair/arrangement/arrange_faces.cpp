@@ -19,13 +19,14 @@ namespace {
 // angles: all is begun again, with only what meets.
 constexpr double kReachSteps = 128 * kFine;
 constexpr double kMostReachSteps = kFine * (1 << 24);  // a 16th of the longest side; boxes are numbers of 32 bits
-constexpr int kNearEdgeRounds = 3, kFullRounds = 6, kMostRounds = 32;
+constexpr int kNearEdgeRounds = 3, kFullRounds = 6;  // in which edges and faces that are near, but do not meet, are cut
+constexpr int kMostRounds = 32;
 constexpr int kFirstRounds = 4;      // in which parts that lie on each other have most of their contacts
 constexpr size_t kFewContacts = 64;  // these may grow in number
 constexpr double kReachGrowth = 4;   // from round to round, of what meets
 
-// Of all rounds with one reach. Parts that touch or overlap take up to 40 pairs and two contacts a triangle; soups in
-// one plane would take thousands of times that.
+// Of all attempts together: half of what is left for each, and the rest for the last one. Parts that touch or overlap
+// take up to 40 pairs and two contacts a triangle; soups in one plane would take thousands of times that.
 constexpr int64_t kLeastWork = 1 << 27, kWorkOfTriangle = 1 << 13;
 
 LatticeFaces snapped(const TriangleSoup& soup, const WeldedVertices& welded, const StepFrame& frame) {
