@@ -1,5 +1,6 @@
 // Compiled instead of the files that use OpenVDB when ISOSHELL_VDB is off.
 #include "io/vdb/grid_kinds.h"
+#include "io/vdb/stage_reader.h"
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/sizing_vdb.h"
@@ -55,6 +56,6 @@ std::shared_ptr<const VelocityField> read_velocity(const std::string& path, cons
 std::shared_ptr<const VelocityField> velocity_of(const std::array<DenseVolume, 3>&, const std::string& name) {
   throw_without_openvdb(ErrorCode::unreadable_input, name);
 }
-StageFile read_stage(const std::string& path) { throw_without_openvdb(ErrorCode::unreadable_input, path); }
+StageFile read_stage(const MeshSource& source) { throw_without_openvdb(ErrorCode::unreadable_input, source.name()); }
 
 }  // namespace isoshell

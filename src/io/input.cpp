@@ -17,6 +17,7 @@
 #include "geometry/given_surface.h"
 #include "io/faces/face_collector.h"
 #include "io/vdb/grid_kinds.h"
+#include "io/vdb/stage_reader.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
@@ -93,8 +94,6 @@ class Reader {
       hold(read_mesh(path, format, context_.memory_limit_bytes));
     else if (known->reads_points)
       hold(read_points(path, format, context_.memory_limit_bytes), request.creases, request.keep_open);
-    else if (format == "vdb" && path != "-" && is_stage_file(path))
-      read_stage_file();
     else
       read_volume_file(request);
     if (request.iso && input_.facts.kind != InputKind::volume) refuse_iso();
@@ -193,6 +192,7 @@ class Reader {
   void read_volume_file(const InputRequest& request) {
     ReadingBudget budget(context_.memory_limit_bytes);
     const MeshSource source(request.path, budget);
+    if (holds_stage({source.begin(), source.size()})) return read_stage_file(source);
     if (holds_labels(source, request.grid)) return read_label_file(source, request);
     hold_volume(request.keep_open, [&](VolumeInfo& volume) {
       return read_volume(source,
@@ -211,9 +211,9 @@ class Reader {
     hold(std::move(grid.volume), "grid " + grid.name + ", ");
   }
 
-  void read_stage_file() {
+  void read_stage_file(const MeshSource& source) {
     input_.facts.kind = InputKind::stage;
-    input_.stage = read_stage(input_.facts.path);
+    input_.stage = read_stage(source);
     note("stage " + input_.stage->info.stage + ", " +
          counted(input_.stage->shell.voxels.voxel_count(), "active voxel"));
   }

@@ -33,8 +33,6 @@ namespace fs = std::filesystem;
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::unwritable_output, "write", message); }
 [[noreturn]] void refuse_use(const std::string& message) { throw Error(ErrorCode::usage, "write", message); }
 
-[[noreturn]] void refuse_vdb_to_pipe() { refuse_use("a .vdb file cannot be written to standard output; name a file"); }
-
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 void check_folder(const std::string& path, const fs::path& folder) {
@@ -74,6 +72,15 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
+void check_one_to_pipe(const std::vector<NamedFile>& outputs) {
+  std::string to_pipe;
+  for (const NamedFile& file : outputs) {
+    if (file.path != "-") continue;
+    if (!to_pipe.empty()) refuse_use(to_pipe + " and " + file.what + " cannot both be standard output");
+    to_pipe = file.what;
+  }
+}
+
 /// Appends their labels to names that are used twice, until none is: a name has its label once, and those that have one
 /// differ.
 void part_equal_names(std::map<int32_t, std::string>& name_of_label) {
@@ -93,14 +100,17 @@ void part_equal_names(std::map<int32_t, std::string>& name_of_label) {
 }  // namespace
 
 std::string preview_path(const std::string& path) {
+  if (path.empty() || path == "-") return "";
   const bool named = fs::path(path).extension() == ".vdb";
   return path.substr(0, path.size() - (named ? 4 : 0)) + ".preview.vdb";
 }
 
 OutputRequest named_output(const std::string& path, const std::string& format, StopAfter stop_after) {
   OutputRequest output{path, format_name(format)};
-  if (path == "-" && output.format.empty())
-    refuse_use("OUTPUT is standard output; say what to write by --output-format");
+  if (path == "-" && output.format.empty()) {
+    if (stop_after == StopAfter::mesh) refuse_use("OUTPUT is standard output; say what to write by --output-format");
+    output.format = "vdb";
+  }
   if (output.format.empty()) output.format = format_of_path(path);
   if (path.empty()) return output;
   if (stop_after == StopAfter::mesh) {
@@ -110,7 +120,6 @@ OutputRequest named_output(const std::string& path, const std::string& format, S
                  listed_formats(writes_mesh, ", ") + (format.empty() ? python_remedy(path, true) : ""));
   } else {
     if (output.format != "vdb") refuse_use("with --stop-after, OUTPUT is a .vdb file; it is '" + path + "'");
-    if (path == "-") refuse_vdb_to_pipe();
   }
   return output;
 }
@@ -145,9 +154,8 @@ std::vector<NamedFile> outputs_of(const RunRequest& r) {
                                   {"--report", r.report},
                                   {"--save-shell", r.save_shell},
                                   {"--save-voronoi", r.save_voronoi}};
-  if (!r.save_voronoi.empty()) files.push_back({"the preview", preview_path(r.save_voronoi)});
-  if (r.stop_after == StopAfter::voronoi && !r.output.path.empty())
-    files.push_back({"the preview", preview_path(r.output.path)});
+  files.push_back({"the preview", preview_path(r.save_voronoi)});
+  if (r.stop_after == StopAfter::voronoi) files.push_back({"the preview", preview_path(r.output.path)});
   return files;
 }
 
@@ -174,9 +182,8 @@ void check_request(const RunRequest& r) {
   if (!r.split_regions.empty() && r.stop_after != StopAfter::mesh)
     refuse_use("--split-regions needs a mesh; leave out --stop-after");
   if (r.report == "-") refuse_use("--report cannot be written to standard output; name a file");
-  if (r.save_shell == "-" || r.save_voronoi == "-") refuse_vdb_to_pipe();
   possible_features(r.options.values, r);
-  if (r.output.path == "-" && r.statistics == "-") refuse_use("OUTPUT and --stats cannot both be standard output");
+  check_one_to_pipe(outputs_of(r));
   const OutputRequest output = named_output(r.output.path, r.output.format, r.stop_after);  // may refuse it
   if (r.options.values.color_features && r.stop_after == StopAfter::mesh && !output.path.empty() &&
       !find_format(output.format)->holds_edges)

@@ -12,7 +12,7 @@
 namespace isoshell {
 
 /// The picture of a Voronoi file for programs that open float grids only: mesh.voronoi.vdb has
-/// mesh.voronoi.preview.vdb.
+/// mesh.voronoi.preview.vdb; empty for standard output, which holds one file.
 std::string preview_path(const std::string& path);
 
 /// The files that a run writes and reads, as far as they are known before it.

@@ -145,7 +145,9 @@ RunRequest request_of_frame(const SequenceRequest& request, int64_t frame) {
 void check_sequence(const SequenceRequest& request) {
   const auto refuse = [](const std::string& text) { throw Error(ErrorCode::usage, "frames", text); };
   const RunRequest& every = request.frame;
-  if (every.input.path == "-" || every.output.path == "-" || every.statistics == "-")
+  const std::vector<NamedFile> written = outputs_of(every);
+  const auto is_pipe = [](const NamedFile& file) { return file.path == "-"; };
+  if (every.input.path == "-" || std::any_of(written.begin(), written.end(), is_pipe))
     refuse("a sequence is read from and written to files; name them by a pattern, as mesh.####.ply");
   if (!every.report.empty()) refuse("--report shows one frame; leave out --frames, or make it of a frame");
   if (!every.split_regions.empty()) refuse("--split-regions is for one frame; leave out --frames");

@@ -6,6 +6,7 @@
 
 #include "isoshell/error.h"
 #include "isoshell/gaps.h"
+#include "run/outputs.h"
 
 namespace isoshell {
 
@@ -35,6 +36,14 @@ StageWriteOptions stage_write_options(const Prepared& prepared, const std::strin
   if (prepared.has_bridges())
     options.bridges = bridging_voxels(prepared.sheet(), find_bridges(prepared.sites(), prepared.sheet()));
   return options;
+}
+
+void save_with_preview(const std::string& path, const Prepared& prepared, const SeedSet& seeds,
+                       const VoronoiLabels& labels, const StageWriteOptions& options) {
+  const LatticeSurface& surface = prepared.surface();
+  save_voronoi(path, surface, prepared.samples(), prepared.shell(), seeds, labels, options);
+  if (const std::string preview = preview_path(path); !preview.empty())
+    save_preview(preview, surface.frame, prepared.shell(), labels, options);
 }
 
 Relaxed seeds_of_stage(Input& input, const Prepared& prepared) {

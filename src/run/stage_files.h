@@ -22,6 +22,10 @@ std::vector<std::string> stage_files(const RunRequest& request, const std::strin
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite);
 
+/// The Voronoi stage file, and its preview where that has a path of its own.
+void save_with_preview(const std::string& path, const Prepared& prepared, const SeedSet& seeds,
+                       const VoronoiLabels& labels, const StageWriteOptions& options);
+
 /// The seeds that a stage file holds, on the sheet that was made of its surface; it has none afterwards. Throws:
 /// unreadable_input where they do not belong there.
 Relaxed seeds_of_stage(Input& input, const Prepared& prepared);

@@ -9,7 +9,6 @@
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/polyline_file.h"
-#include "isoshell/io/vdb_file.h"
 #include "isoshell/repair.h"
 #include "isoshell/transfer_attributes.h"
 #include "progress/step.h"
@@ -195,10 +194,7 @@ class RunSteps::Run {
       record_.report.digests["labels"] = relaxed_->report.digests["labels"] = digest_text(digest(labels));
     const StageWriteOptions options = stage_options(overwrite);
     for (const std::string& path : paths)
-      write_step("save-voronoi", path, [&] {
-        isoshell::save_voronoi(path, p.surface(), p.samples(), p.shell(), seeds, labels, options);
-        save_preview(preview_path(path), p.surface().frame, p.shell(), labels, options);
-      });
+      write_step("save-voronoi", path, [&] { save_with_preview(path, p, seeds, labels, options); });
   }
 
  private:

@@ -27,6 +27,28 @@ TEST_CASE("run: resumed from either stage file, the result is the same, byte by 
   }
 }
 
+TEST_CASE("run: stage files go through pipes, and are those that files hold", "[cli][vdb]") {
+  Folder folder;
+  write_ball(folder);
+  const std::string command = "'" + command_path() + "' ", resume = command + "- piped.ply --input-format vdb --force";
+  for (const std::string& stage : {std::string("shell"), std::string("voronoi")}) {
+    const std::string stop = " --stop-after " + stage + kQuick;
+    REQUIRE(folder.run("ball.off file.vdb --force" + stop).status == 0);
+    REQUIRE(folder.run("ball.off -" + stop + "> piped.vdb").status == 0);
+    CHECK(folder.content("file.vdb") == folder.content("piped.vdb"));
+    CHECK_FALSE(folder.has("-.preview.vdb"));
+    REQUIRE(folder.run("file.vdb file.ply --force").status == 0);
+    REQUIRE(folder.run("ball.off -" + stop + "| " + resume).status == 0);
+    CHECK(folder.content("file.ply") == folder.content("piped.ply"));
+  }
+  const auto damaged = folder.shell("head -c 2000 file.vdb | " + resume);
+  CHECK(damaged.status == 3);
+  CHECK(contains(damaged.err, "standard input"));
+  CHECK(folder.shell("cat file.vdb | " + resume + " --max-memory 100K").status == 7);
+  REQUIRE(folder.run("ball.off out.ply --save-shell -" + kQuick + "> saved.vdb").status == 0);
+  CHECK(folder.run("saved.vdb resumed.ply").status == 0);
+}
+
 TEST_CASE("run: a run that resumes says which attributes it is without, and where they are", "[cli][vdb]") {
   Folder folder;
   folder.write("quad.ply",

@@ -1,8 +1,9 @@
 #!/bin/sh
 # Do OpenVDB's own tools and its Python module open what we write? Exit status 77: skipped, the tools are not installed.
-# Usage: test_vdb_tools.sh WRITER, which writes stage files and a preview into the folder that it is given.
+# Usage: test_vdb_tools.sh WRITER COMMAND. The writer writes stage files and a preview into the folder that it is given.
 set -eu
 writer=$1
+command=$2
 python="${PYTHON:-/usr/bin/python3} -s"  # a user's own NumPy may not fit the system's module
 skip() {
   echo "skipped: $1"
@@ -48,4 +49,15 @@ try:
 except KeyError:
     pass
 PYTHON
-echo "opened by vdb_print and pyopenvdb"
+
+command -v vdb_tool > /dev/null || skip "vdb_tool is not installed"
+make_ball() { vdb_tool -quiet -sphere r=1 voxel=0.05 name=ball -sphere r=2 voxel=0.5 name=other "$@"; }
+remesh() { "$command" "$@" --vertices 300 --quiet; }
+make_ball -write "$folder/ball.vdb"
+remesh "$folder/ball.vdb:ball" "$folder/file.ply"
+vdb_tool -quiet -sphere r=1 voxel=0.05 -write stdout.vdb | remesh - "$folder/pipe.ply" --input-format vdb
+cmp "$folder/file.ply" "$folder/pipe.ply"
+make_ball -write stdout.vdb > "$folder/stream.vdb"
+remesh "$folder/stream.vdb:ball" "$folder/stream.ply"
+cmp "$folder/file.ply" "$folder/stream.ply"
+echo "opened by vdb_print and pyopenvdb, and joined to vdb_tool by a pipe"

@@ -1,9 +1,6 @@
 // What is fuzzed: every reader, by the name of its corpus folder.
 #include "fuzz/targets.h"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -12,9 +9,9 @@
 #include "io/points/point_readers.h"
 #include "io/polyline_readers.h"
 #include "io/vdb/grid_kinds.h"
+#include "io/vdb/stage_reader.h"
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
-#include "isoshell/io/vdb_file.h"
 
 namespace isoshell::fuzz {
 namespace {
@@ -79,16 +76,7 @@ void run_labels(View<const char> bytes) {
   if (voxels < 1 || int64_t(volume.labels.size()) != voxels) std::abort();
 }
 
-/// Stage files are read by name: the bytes get one in memory.
-void run_stage(View<const char> bytes) {
-  const int file = memfd_create("fuzz", MFD_CLOEXEC);
-  struct Close {
-    int file;
-    ~Close() { close(file); }
-  } closing{file};
-  if (file < 0 || write(file, bytes.data, size_t(bytes.size)) != bytes.size) std::abort();
-  read_stage("/proc/self/fd/" + std::to_string(file));
-}
+void run_stage(View<const char> bytes) { read_stage(MeshSource("fuzz", bytes)); }
 
 }  // namespace
 

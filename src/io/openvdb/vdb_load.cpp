@@ -6,7 +6,6 @@
 #include <cmath>
 #include <exception>
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "core/parallel_ranges.h"
@@ -15,6 +14,7 @@
 #include "io/openvdb/vdb_grids.h"
 #include "io/openvdb/vdb_stream.h"
 #include "io/vdb/shell_sites.h"
+#include "io/vdb/stage_reader.h"
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/vdb_format.h"
 #include "io/vdb/vdb_layout.h"
@@ -29,13 +29,12 @@ using namespace vdb_format;
 
 constexpr int64_t kMostOfAMesh = int64_t(1) << 36;  // of anything: indices have 32 bits
 
-/// One stage file in memory.
+/// One stage file in memory; the source outlives it.
 class StageReader {
  public:
-  explicit StageReader(const std::string& path)
-      : path_(path), bytes_(read_file_start(path, std::numeric_limits<int64_t>::max())) {
-    layout_ = read_vdb_layout(path, bytes_.view());
-    if (is_checksum_tag(layout_.tag) && layout_.tag != vdb_checksum_tag(bytes_.view()))
+  explicit StageReader(const MeshSource& source)
+      : path_(source.name()), bytes_{source.begin(), source.size()}, layout_(read_vdb_layout(path_, bytes_)) {
+    if (is_checksum_tag(layout_.tag) && layout_.tag != vdb_checksum_tag(bytes_))
       fail("its content does not agree with its checksum " + layout_.tag + ": the file is damaged");
   }
 
@@ -84,7 +83,7 @@ class StageReader {
  private:
   openvdb::GridBase::Ptr parse(const VdbGridSpan& span) const {
     try {
-      return read_vdb_grid(path_, bytes_.view(), span);
+      return read_vdb_grid(path_, bytes_, span);
     } catch (const std::bad_alloc&) {
       if (is_checksum_tag(layout_.tag)) throw Error(ErrorCode::out_of_memory, "read", path_ + ": out of memory");
       fail("grid \"" + span.name + "\" asks for more memory than there is: the file is damaged");
@@ -92,8 +91,8 @@ class StageReader {
   }
 
   const std::string path_;
-  const Buffer<char> bytes_;
-  VdbLayout layout_;
+  const View<const char> bytes_;
+  const VdbLayout layout_;
 };
 
 LatticeFrame read_frame(const StageReader& file) {
@@ -350,9 +349,9 @@ StageInfo read_info(const StageReader& file) {
 
 }  // namespace
 
-StageFile read_stage(const std::string& path) {
+StageFile read_stage(const MeshSource& source) {
   initialize_openvdb();
-  const StageReader file(path);
+  const StageReader file(source);
   StageFile stage;
   stage.info = read_info(file);
   stage.surface.frame = read_frame(file);

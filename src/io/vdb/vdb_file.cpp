@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "io/vdb/stage_reader.h"
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/vdb_format.h"
 #include "io/vdb/vdb_layout.h"
+#include "isoshell/error.h"
 
 namespace isoshell {
 
@@ -25,14 +27,25 @@ Buffer<char> read_file_start(const std::string& path, int64_t max_bytes) {
   return bytes;
 }
 
+bool holds_stage(View<const char> bytes) {
+  try {
+    return read_vdb_header("", bytes).texts.count(vdb_format::kKeyStage) > 0;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 bool is_stage_file(const std::string& path) {
   try {
-    const Buffer<char> start = read_file_start(path, vdb_format::kMaxHeaderBytes);
-    const auto texts = read_vdb_header(path, start.view()).texts;
-    return texts.count(vdb_format::kKeyStage) > 0;
+    return holds_stage(read_file_start(path, vdb_format::kMaxHeaderBytes).view());
   } catch (const std::exception&) {
     return false;
   }
+}
+
+StageFile read_stage(const std::string& path) {
+  ReadingBudget no_limit;
+  return read_stage(MeshSource(path, no_limit));
 }
 
 }  // namespace isoshell

@@ -25,29 +25,37 @@ std::map<std::string, std::string> read_metadata(VdbCursor& in) {
   return texts;
 }
 
-VdbGridSpan read_grid_span(const std::string& path, View<const char> bytes, int64_t begin) {
+/// Where a file says that a grid ends, which is held against its other offsets and the bytes that there are.
+int64_t end_by_offsets(const std::string& path, VdbCursor in, const VdbGridSpan& grid, int64_t bytes) {
+  const int64_t content = in.value<int64_t>("offset of a grid"),
+                blocks = in.value<int64_t>("offset of a grid's blocks"), end = in.value<int64_t>("end of a grid");
+  if (content != grid.content || end < content || (!grid.instance && (blocks < content || blocks > end)))
+    throw_unreadable_vdb(path, "grid \"" + grid.name + "\" has offsets " + std::to_string(content) + ", " +
+                                   std::to_string(blocks) + ", " + std::to_string(end) + " where the first must be " +
+                                   std::to_string(grid.content) + " and they must rise: the file is damaged");
+  if (end > bytes)
+    throw_unreadable_vdb(path, "grid \"" + grid.name + "\" ends at byte " + std::to_string(end) + " of " +
+                                   std::to_string(bytes) + ": the file is truncated");
+  return end;
+}
+
+VdbGridSpan read_grid_span(const std::string& path, View<const char> bytes, int64_t begin, bool has_offsets) {
+  constexpr int64_t kOffsetBytes = 3 * 8;  // a stream has them as well, without a meaning
   VdbCursor in(path, bytes, begin);
   VdbGridSpan grid;
   grid.begin = begin;
   grid.name = in.text("name of a grid");
   grid.type = in.text("type of a grid");
   grid.instance = !in.text("parent of a grid").empty();
-  const int64_t content = in.value<int64_t>("offset of a grid"),
-                blocks = in.value<int64_t>("offset of a grid's blocks");
-  grid.end = in.value<int64_t>("end of a grid");
+  const VdbCursor offsets = in;
+  in.take(kOffsetBytes, "offsets of a grid");
   grid.content = in.at();
-  if (content != grid.content || grid.end < content || (!grid.instance && (blocks < content || blocks > grid.end)))
-    throw_unreadable_vdb(path, "grid \"" + grid.name + "\" has offsets " + std::to_string(content) + ", " +
-                                   std::to_string(blocks) + ", " + std::to_string(grid.end) +
-                                   " where the first must be " + std::to_string(grid.content) +
-                                   " and they must rise: the file is damaged");
-  if (grid.end > bytes.size)
-    throw_unreadable_vdb(path, "grid \"" + grid.name + "\" ends at byte " + std::to_string(grid.end) + " of " +
-                                   std::to_string(bytes.size) + ": the file is truncated");
+  grid.end = has_offsets ? end_by_offsets(path, offsets, grid, bytes.size) : bytes.size;
   VdbCursor inside(path, {bytes.data, grid.end}, grid.content);
   grid.compression = inside.value<uint32_t>("compression of a grid");
   grid.texts = read_metadata(inside);
   grid.transform = inside.at();
+  if (!has_offsets) grid.end = walk_vdb_tree(path, bytes, grid).end;
   return grid;
 }
 
@@ -75,13 +83,12 @@ VdbLayout read_vdb_header(const std::string& path, View<const char> bytes) {
 
 VdbLayout read_vdb_layout(const std::string& path, View<const char> bytes) {
   VdbLayout layout = read_vdb_header(path, bytes);
-  if (!layout.has_offsets) throw_unreadable_vdb(path, "was written as a stream, without offsets; save it as a file");
   VdbCursor in(path, bytes, kVdbHeaderBytes);
   read_metadata(in);
   const uint32_t count = in.value<uint32_t>("count of grids");
   int64_t at = in.at();
   for (uint32_t i = 0; i < count; ++i) {
-    layout.grids.push_back(read_grid_span(path, bytes, at));
+    layout.grids.push_back(read_grid_span(path, bytes, at, layout.has_offsets));
     at = layout.grids.back().end;
   }
   if (at != bytes.size)

@@ -38,13 +38,21 @@ struct VdbLayout {
 /// Throws: unreadable_input when they are not those of a .vdb file of format 222 or newer.
 VdbLayout read_vdb_header(const std::string& path, View<const char> bytes);
 
-/// Reads the whole layout. Result: the grids follow one another without a gap, the last one ends with the file, and the
-/// metadata of each lies inside it. Throws: unreadable_input.
+/// Reads the whole layout. A stream has no offsets: each of its grids ends where a walk through its tree does. Result:
+/// the grids follow one another without a gap, the last one ends with the file, and the metadata of each lies inside
+/// it. Throws: unreadable_input, also for a stream with a grid that cannot be walked.
 VdbLayout read_vdb_layout(const std::string& path, View<const char> bytes);
 
-/// Walks the tree of a grid without decompressing it: every count, mask and length must be borne out by the bytes, so
-/// that OpenVDB cannot be led astray by them. Result: bytes that the tree takes in memory. Throws: unreadable_input,
-/// also for a grid type that is not a number or a vector of three.
+struct VdbTreeExtent {
+  int64_t memory_bytes = 0;  ///< that the tree takes; 0 of an instance, which has none of its own
+  int64_t end = 0;           ///< in bytes from the start of the file
+};
+
+/// Walks the transform and the tree of a grid without decompressing it: every count, mask and length must be borne out
+/// by the bytes up to `grid.end`, so that OpenVDB cannot be led astray by them. Throws: unreadable_input, also for a
+/// grid of other values than numbers, masks and vectors of three.
+VdbTreeExtent walk_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid);
+/// The same of a grid that must end with its tree. Result: bytes that the tree takes in memory.
 int64_t check_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid);
 
 /// Checksum of a file's bytes without its tag, in the form of a tag that is recognised as ours.

@@ -30,23 +30,33 @@ struct ValueType {
 };
 constexpr ValueType kTypes[] = {{"Tree_float_5_4_3", 4, 2},   {"Tree_double_5_4_3", 8, 2}, {"Tree_int32_5_4_3", 4, 4},
                                 {"Tree_int64_5_4_3", 8, 8},   {"Tree_vec3s_5_4_3", 12, 6}, {"Tree_vec3d_5_4_3", 24, 6},
-                                {"Tree_vec3i_5_4_3", 12, 12}, {"Tree_bool_5_4_3", 1, 1}};
+                                {"Tree_vec3i_5_4_3", 12, 12}, {"Tree_bool_5_4_3", 1, 1},   {"Tree_mask_5_4_3", 1, 1}};
 constexpr char kHalfSuffix[] = "_HalfFloat";
+
+/// Leaves of these hold masks: which voxels are active, and for bool a second one, which values are true.
+int masks_of_leaf(const std::string& type) { return type == "Tree_bool_5_4_3" ? 2 : type == "Tree_mask_5_4_3" ? 1 : 0; }
 
 class TreeWalk {
  public:
   TreeWalk(const std::string& path, View<const char> bytes, const VdbGridSpan& grid)
-      : in_(path, {bytes.data, grid.end}, grid.transform), compression_(grid.compression), end_(grid.end) {
+      : in_(path, {bytes.data, grid.end}, grid.transform),
+        is_instance_(grid.instance),
+        compression_(grid.compression),
+        masks_of_leaf_(masks_of_leaf(grid.type)) {
     for (const ValueType& type : kTypes) {
       if (grid.type == type.name) value_bytes_ = stored_bytes_ = type.bytes;
       if (grid.type == std::string(type.name) + kHalfSuffix) value_bytes_ = type.bytes, stored_bytes_ = type.half_bytes;
     }
-    if (value_bytes_ == 0) throw_unreadable_vdb(path, "grid \"" + grid.name + "\" has the unknown type " + grid.type);
+    if (value_bytes_ == 0 && !is_instance_)
+      throw_unreadable_vdb(path, "grid \"" + grid.name + "\" is of type " + grid.type +
+                                     ", and nothing tells where such a grid ends in a stream; leave it out, or write a "
+                                     "file, which has offsets");
     if (compression_ > (kZip | kActiveMask | kBlosc)) in_.fail("unknown compression " + std::to_string(compression_));
   }
 
-  int64_t run() {
+  VdbTreeExtent run() {
     skip_transform();
+    if (is_instance_) return {0, in_.at()};
     if (in_.value<uint32_t>("count of buffers") != 1) in_.fail("a tree must have one buffer");
     in_.take(value_bytes_, "background");
     const uint32_t tiles = in_.value<uint32_t>("count of tiles"), children = in_.value<uint32_t>("count of nodes");
@@ -56,11 +66,11 @@ class TreeWalk {
       walk_node<5>();
       ++uppers_;
     }
-    for (int64_t l = 0; l < leaves_; ++l) walk_values(512, count_on(mask(512)));
-    if (in_.at() != end_) in_.fail("the grid goes on for " + std::to_string(end_ - in_.at()) + " bytes after its tree");
+    for (int64_t l = 0; l < leaves_; ++l) walk_leaf();
     const int64_t leaf_bytes = 512 * value_bytes_ + kLeafBytes, tile_bytes = std::max<int64_t>(value_bytes_, 8);
-    return leaves_ * leaf_bytes + lowers_ * (4096 * tile_bytes + kNodeBytes) +
-           uppers_ * (32768 * tile_bytes + kNodeBytes);
+    return {
+        leaves_ * leaf_bytes + lowers_ * (4096 * tile_bytes + kNodeBytes) + uppers_ * (32768 * tile_bytes + kNodeBytes),
+        in_.at()};
   }
 
  private:
@@ -101,6 +111,13 @@ class TreeWalk {
     }
   }
 
+  void walk_leaf() {
+    const View<const char> active = mask(512);
+    if (masks_of_leaf_ == 0) return walk_values(512, count_on(active));
+    in_.take(kCoordBytes, "origin of a leaf");
+    if (masks_of_leaf_ == 2) mask(512);
+  }
+
   void walk_values(int64_t count, int64_t active) {
     const uint8_t code = in_.value<uint8_t>("code of inactive values");
     if (code > kAllValues) in_.fail("unknown code " + std::to_string(code) + " of inactive values");
@@ -139,14 +156,24 @@ class TreeWalk {
   }
 
   VdbCursor in_;
+  bool is_instance_;
   uint32_t compression_;
-  int64_t end_, value_bytes_ = 0, stored_bytes_ = 0, leaves_ = 0, lowers_ = 0, uppers_ = 0;
+  int masks_of_leaf_;
+  int64_t value_bytes_ = 0, stored_bytes_ = 0, leaves_ = 0, lowers_ = 0, uppers_ = 0;
 };
 
 }  // namespace
 
-int64_t check_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid) {
+VdbTreeExtent walk_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid) {
   return TreeWalk(path, bytes, grid).run();
+}
+
+int64_t check_vdb_tree(const std::string& path, View<const char> bytes, const VdbGridSpan& grid) {
+  const VdbTreeExtent tree = walk_vdb_tree(path, bytes, grid);
+  if (tree.end != grid.end)
+    throw_unreadable_vdb(path, "byte " + std::to_string(tree.end) + ": grid \"" + grid.name + "\" goes on for " +
+                                   std::to_string(grid.end - tree.end) + " bytes after its tree; the file is damaged");
+  return tree.memory_bytes;
 }
 
 }  // namespace isoshell
