@@ -31,6 +31,7 @@ namespace {
 
 constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no point supports
 constexpr double kNotableLostPart = 0.05;  // of points, by area, that no surface goes through
+constexpr double kParticlePart = 0.65;     // of points without a flat neighbourhood, where they fill a volume
 constexpr double kNotableJumps = 0.01;     // of the cells that the surface of a volume crosses
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::unreadable_input, "read", message); }
@@ -125,6 +126,11 @@ class Reader {
          << (points.normals_turned ? " and turned" : "") << (points.sharp ? ", sides with creases" : "");
     note(text.str());
     if (points.normals_ignored) warn("its normals do not fit its points; others were estimated");
+    if (points.unflat_part >= kParticlePart)
+      warn("the points fill a volume, as particles of a fluid do: " +
+           std::to_string(std::lround(100 * points.unflat_part)) +
+           " % of them have no flat neighbourhood; a surface around particles is made by a tool such as splashsurf, " +
+           "whose mesh can be the input here");
     if (points.outliers > 0) warn(counted(points.outliers, "point") + " left out, far from all others");
     if (1 - points.held_part >= kNotableLostPart)
       warn(std::to_string(std::lround(100 * (1 - points.held_part))) +
