@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "core/file_format.h"
+#include "geometry/box.h"
 #include "geometry/given_surface.h"
+#include "geometry/world_vector.h"
 #include "io/faces/face_collector.h"
 #include "io/vdb/grid_kinds.h"
 #include "isoshell/advanced/stages.h"
@@ -93,7 +95,7 @@ class Reader {
     else if (known->reads_mesh)
       hold(read_mesh(path, format, context_.memory_limit_bytes));
     else if (known->reads_points)
-      hold(read_points(path, format, context_.memory_limit_bytes), request.creases, request.keep_open);
+      hold(read_points(path, format, context_.memory_limit_bytes), request);
     else if (format == "vdb" && path != "-" && is_stage_file(path))
       read_stage_file();
     else
@@ -112,6 +114,21 @@ class Reader {
     facts.regions = regions_of_surface(soup);
     note(counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));
     input_.soup = std::move(soup);
+  }
+
+  void hold_points(PointCloud cloud) {
+    std::vector<WorldPoint>& points = input_.points = std::move(cloud.position);
+    std::sort(points.begin(), points.end(), is_before);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    if (points.empty()) throw Error(ErrorCode::nothing_to_mesh, "points", input_.facts.path + ": holds no point");
+    const WorldBox box = box_of(points);
+    InputFacts& facts = input_.facts;
+    facts.kind = InputKind::points;
+    facts.vertices = int64_t(points.size());
+    facts.faces = 0;
+    facts.box_min = box.min;
+    facts.box_max = box.max;
+    note(counted(facts.vertices, "point"));
   }
 
   void hold(const PointCloud& cloud, VolumeCreases creases, bool keep_open) {
@@ -188,12 +205,19 @@ class Reader {
   Input taken() { return std::move(input_); }
 
  private:
+  void hold(PointCloud cloud, const InputRequest& request) {
+    if (request.keep_points)
+      hold_points(std::move(cloud));
+    else
+      hold(cloud, request.creases, request.keep_open);
+  }
+
   void read_ply(const InputRequest& request) {
     PlyContent content = read_ply_content(input_.facts.path, context_.memory_limit_bytes);
     if (!content.is_points) return hold(std::move(content.mesh));
     if (content.unusable_faces > 0)
       warn("none of its faces is usable (" + with_commas(content.unusable_faces) + "); it is read as a point cloud");
-    hold(content.points, request.creases, request.keep_open);
+    hold(std::move(content.points), request);
   }
 
   void read_volume_file(const InputRequest& request) {
@@ -306,6 +330,14 @@ Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_
   context.memory_limit_bytes = memory_limit_bytes;
   Reader reader(name, context, tell);
   reader.hold(cloud, creases, keep_open);
+  return reader.taken();
+}
+
+Input input_of_points(PointCloud cloud, const std::string& name, const Tell& tell) {
+  check_points(cloud, name);
+  const Context unlimited;
+  Reader reader(name, unlimited, tell);
+  reader.hold_points(std::move(cloud));
   return reader.taken();
 }
 
