@@ -1,4 +1,4 @@
-// How far a mesh is from another one, both ways.
+// How far a mesh is from another one, both ways, or from points.
 #pragma once
 
 #include <optional>
@@ -25,6 +25,7 @@ struct MeshDistance {
   OneSidedDistance to_reference, from_reference;
   double diagonal = 0;  ///< of the reference's bounding box
   NormalDeviation normal_to_reference, normal_from_reference;
+  bool is_one_way = false;  ///< the reference is points: all but the distance from it is not measured
 
   /// The Hausdorff distance, as far as the samples show it.
   double largest() const { return to_reference.max > from_reference.max ? to_reference.max : from_reference.max; }
@@ -58,6 +59,11 @@ struct DistanceOptions {
 /// samples.
 MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& reference, Context& context,
                               const DistanceOptions& options = {});
+
+/// From each of the points, and nothing the other way: how far the mesh is from the surface that they are of is not
+/// known any better than they are apart. Result: exact up to rounding, sums in the order of the points. Throws: usage
+/// when there is no point, and as the other does.
+MeshDistance measure_distance(const TriangleMesh& mesh, const std::vector<WorldPoint>& reference, Context& context);
 
 /// Of each point to the nearest one of the mesh, exact up to rounding, world units. Throws: usage as measure_distance.
 std::vector<double> distances(const std::vector<WorldPoint>& points, const TriangleMesh& mesh, Context& context);

@@ -25,7 +25,8 @@ def mesh_info(mesh: SourceLike, *faces: Any, ref: Optional[SourceLike] = None,
     Args:
         mesh: a mesh as remesh() takes it: a path, (vertices, faces), an object that has both, isoshell.Mesh, a Result.
         faces: mesh_info(V, F) is mesh_info((V, F)).
-        ref: also measure distances and deviations of normals from this surface, both ways: any source of remesh().
+        ref: also measure distances and deviations of normals from this surface, both ways: any source of remesh(). Of
+            points the distances from each of them to the mesh are measured, and nothing the other way.
         require: closed, manifold, no-self-intersections, genus=G, components=N, boundary-loops=N, regions (each closed,
             with shared walls), min-angle=DEG, and with ref max-deviation=W (world units) and normal-deviation=DEG; a
             list, or one text with commas.

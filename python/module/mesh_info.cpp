@@ -47,6 +47,7 @@ nb::tuple mesh_info_of(Place& place, const Source& source, const Keywords& keywo
                   read_other = [&] {
                     RunRequest again = *of_reference;
                     again.tell = request.tell;
+                    again.input.keep_points = true;
                     return input_of_run(read_reference, again, context);
                   };
                 return mesh_info([&] { return input_of_run(read, request, context); }, read_other, request.gates,
@@ -65,6 +66,7 @@ std::optional<Input> read_by(const nb::object& open, const InputRequest& asked, 
     for (const std::string& text : warnings) tell(MessageKind::warning, text);
     RunRequest request = arguments_of({{"features", "off"}}, "").run;  // creases are for who remeshes
     request.tell = tell;
+    request.input.keep_points = asked.keep_points;
     const ReadMemory read = nb::cast<const Source&>(source).read;
     const nb::gil_scoped_release released;
     Input input = read(request, context);

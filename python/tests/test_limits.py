@@ -220,6 +220,18 @@ def test_back_of_a_cloud(run, tmp_path, claim):
     assert re.search(r"\d+ % of the surface has no points near it and was closed smoothly", done.said)
 
 
+@claims("**Points are points of a surface.**", "as particles of a fluid do", "have no flat neighbourhood", "splashsurf")
+def test_particles_of_a_fluid(run, tmp_path, claim):
+    inside = np.random.default_rng(1).uniform(-1, 1, (4000, 3))
+    np.savetxt(tmp_path / "particles.xyz", inside[(inside**2).sum(axis=1) < 1])
+    np.savetxt(tmp_path / "scan.xyz", make_ball(50)[0])
+    said = run(tmp_path / "particles.xyz", "--vertices", 300, "--allow-intersections").said
+    share = re.search(r"fill a volume, as particles of a fluid do: (\d+) % of them have no flat neighbourhood", said)
+    assert share and 78 < int(share[1]) < 88
+    assert "splashsurf" in said
+    assert "fill a volume" not in run(tmp_path / "scan.xyz", "--vertices", 300).said
+
+
 @claims("**Surfaces without thickness**", "unless borders are kept", "seven voxels, a 25th of its side",
         "three of the voxels of `--voxel-size` a 64th of it")
 def test_surfaces_without_thickness(run, tmp_path, claim):

@@ -65,7 +65,7 @@ def test_a_ball_of_booleans_and_a_cloud_may_be_the_reference(ball):
     assert isoshell.mesh_info(ball, ref=cloud)["reference"]["kind"] == "points"
 
 
-def test_a_cloud_is_read_without_creases_as_the_command_reads_it(certificate, ball, tmp_path):
+def test_a_cloud_stays_points_as_the_command_reads_it(certificate, ball, tmp_path):
     random = np.random.default_rng(1)
     points = random.uniform(-1, 1, (4_000, 3))
     points[np.arange(len(points)), random.integers(0, 3, len(points))] = random.choice([-1.0, 1.0], len(points))
@@ -74,6 +74,7 @@ def test_a_cloud_is_read_without_creases_as_the_command_reads_it(certificate, ba
     of_command = certificate(mesh, "--ref", tmp_path / "points.xyz")[1]
     assert of_command == isoshell.mesh_info(mesh, ref=tmp_path / "points.xyz")
     assert of_command["distance"] == isoshell.mesh_info(mesh, ref=isoshell.Points(points))["distance"]
+    assert of_command["distance"]["to_reference"] is None and of_command["reference"]["vertices"] == len(points)
 
 
 def test_a_requirement_that_is_missed_is_an_error_with_the_certificate(certificate, ball, tmp_path):

@@ -125,6 +125,22 @@ def test_names_of_materials_are_labels(tmp_path, box):
     assert {labels[n] for n in np.unique(numbers)} == {"iron", "wood"}
 
 
+def test_names_of_the_solids_of_a_text_stl_are_labels_of_groups(tmp_path, box):
+    vertices, faces = box
+    path, text = tmp_path / "box.stl", ""
+    for name, sides in {"lid": faces[:1], "gr\udcfc\udcdf": faces[1:]}.items():  # one that is not UTF-8
+        text += f"solid {name}\n"
+        for a, b, c, d in sides:
+            for corners in (a, b, c), (a, c, d):
+                rows = "".join("vertex {} {} {}\n".format(*vertices[i]) for i in corners)
+                text += f"facet normal 0 0 0\nouter loop\n{rows}endloop\nendfacet\n"
+        text += f"endsolid {name}\n"
+    path.write_text(text, "utf-8", "surrogateescape")
+    result = isoshell.remesh(path, vertices=300, resolution=32)
+    assert result.labels == {"group": ["lid", "gr\udcfc\udcdf"]}
+    assert set(result.attributes["group"]) == {0, 1}
+
+
 def test_attributes_given_as_arrays_are_those_of_a_file_that_has_them(tmp_path, ball):
     vertices, faces = ball
     heat = np.arange(len(vertices), dtype=np.float32)

@@ -104,6 +104,7 @@ Source points(const AnyArray& positions, const std::optional<AnyArray>& normals)
   return {"",
           [given](const RunRequest& request, const Context& context) {
             refuse_volume_options(request);
+            if (request.input.keep_points) return input_of_points(*given, "points", request.tell);
             return input_of(*given, "points", context.memory_limit_bytes, request.tell,
                             volume_creases(request.options.values.features),
                             request.options.values.boundary == Boundary::keep);

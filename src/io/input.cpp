@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "core/file_format.h"
+#include "geometry/box.h"
 #include "geometry/given_surface.h"
+#include "geometry/world_vector.h"
 #include "io/faces/face_collector.h"
 #include "io/vdb/grid_kinds.h"
 #include "io/vdb/stage_reader.h"
@@ -32,6 +34,7 @@ namespace {
 
 constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no point supports
 constexpr double kNotableLostPart = 0.05;  // of points, by area, that no surface goes through
+constexpr double kParticlePart = 0.65;     // of points without a flat neighbourhood, where they fill a volume
 constexpr double kNotableJumps = 0.01;     // of the cells that the surface of a volume crosses
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::unreadable_input, "read", message); }
@@ -93,7 +96,7 @@ class Reader {
     else if (known->reads_mesh)
       hold(read_mesh(path, format, context_.memory_limit_bytes));
     else if (known->reads_points)
-      hold(read_points(path, format, context_.memory_limit_bytes), request.creases, request.keep_open);
+      hold(read_points(path, format, context_.memory_limit_bytes), request);
     else
       read_volume_file(request);
     if (request.iso && input_.facts.kind != InputKind::volume) refuse_iso();
@@ -112,6 +115,21 @@ class Reader {
     input_.soup = std::move(soup);
   }
 
+  void hold_points(PointCloud cloud) {
+    std::vector<WorldPoint>& points = input_.points = std::move(cloud.position);
+    std::sort(points.begin(), points.end(), is_before);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    if (points.empty()) throw Error(ErrorCode::nothing_to_mesh, "points", input_.facts.path + ": holds no point");
+    const WorldBox box = box_of(points);
+    InputFacts& facts = input_.facts;
+    facts.kind = InputKind::points;
+    facts.vertices = int64_t(points.size());
+    facts.faces = 0;
+    facts.box_min = box.min;
+    facts.box_max = box.max;
+    note(counted(facts.vertices, "point"));
+  }
+
   void hold(const PointCloud& cloud, VolumeCreases creases, bool keep_open) {
     input_.facts.kind = InputKind::points;
     PointSurfaceInfo points;
@@ -124,6 +142,11 @@ class Reader {
          << (points.normals_turned ? " and turned" : "") << (points.sharp ? ", sides with creases" : "");
     note(text.str());
     if (points.normals_ignored) warn("its normals do not fit its points; others were estimated");
+    if (points.unflat_part >= kParticlePart)
+      warn("the points fill a volume, as particles of a fluid do: " +
+           std::to_string(std::lround(100 * points.unflat_part)) +
+           " % of them have no flat neighbourhood; a surface around particles is made by a tool such as splashsurf, " +
+           "whose mesh can be the input here");
     if (points.outliers > 0) warn(counted(points.outliers, "point") + " left out, far from all others");
     if (1 - points.held_part >= kNotableLostPart)
       warn(std::to_string(std::lround(100 * (1 - points.held_part))) +
@@ -181,12 +204,19 @@ class Reader {
   Input taken() { return std::move(input_); }
 
  private:
+  void hold(PointCloud cloud, const InputRequest& request) {
+    if (request.keep_points)
+      hold_points(std::move(cloud));
+    else
+      hold(cloud, request.creases, request.keep_open);
+  }
+
   void read_ply(const InputRequest& request) {
     PlyContent content = read_ply_content(input_.facts.path, context_.memory_limit_bytes);
     if (!content.is_points) return hold(std::move(content.mesh));
     if (content.unusable_faces > 0)
       warn("none of its faces is usable (" + with_commas(content.unusable_faces) + "); it is read as a point cloud");
-    hold(content.points, request.creases, request.keep_open);
+    hold(std::move(content.points), request);
   }
 
   void read_volume_file(const InputRequest& request) {
@@ -300,6 +330,14 @@ Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_
   context.memory_limit_bytes = memory_limit_bytes;
   Reader reader(name, context, tell);
   reader.hold(cloud, creases, keep_open);
+  return reader.taken();
+}
+
+Input input_of_points(PointCloud cloud, const std::string& name, const Tell& tell) {
+  check_points(cloud, name);
+  const Context unlimited;
+  Reader reader(name, unlimited, tell);
+  reader.hold_points(std::move(cloud));
   return reader.taken();
 }
 

@@ -61,6 +61,25 @@ MeshDistance measure_distance(const TriangleMesh& mesh, const TriangleMesh& refe
   return {to.distance, from.distance, size, to.normals, from.normals};
 }
 
+MeshDistance measure_distance(const TriangleMesh& mesh, const std::vector<WorldPoint>& reference, Context& context) {
+  if (reference.empty()) throw Error(ErrorCode::usage, "distance", "there is no point to measure from");
+  MeshDistance found;
+  found.is_one_way = true;
+  OneSidedDistance& from = found.from_reference;
+  double sum = 0, sum_sq = 0;
+  for (const double d : distances(reference, mesh, context)) {
+    sum += d;
+    sum_sq += d * d;
+    from.max = std::max(from.max, d);
+  }
+  from.mean = sum / double(reference.size());
+  from.rms = std::sqrt(sum_sq / double(reference.size()));
+  from.at_most = from.max;
+  const WorldBox box = box_of(reference);
+  found.diagonal = length(box.max - box.min);
+  return found;
+}
+
 std::vector<double> distances(const std::vector<WorldPoint>& points, const TriangleMesh& mesh, Context& context) {
   check(mesh);
   return run_with_threads(context, [&] {

@@ -144,6 +144,7 @@ std::string miss_min_dihedral(const Gates& g, const Measured& m) {
 std::string miss_max_deviation(const Gates& g, const Measured& m) {
   const MeshDistance& distance = measured(m.distance, "distance");
   if (distance.largest() <= *g.max_deviation_world) return "";
+  if (distance.is_one_way) return text("the points are up to ", distance.from_reference.max, " from the mesh");
   return text("the result is up to ", distance.to_reference.max, " from the input, the input up to ",
               distance.from_reference.max, " from the result");
 }

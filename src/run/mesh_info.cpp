@@ -21,6 +21,14 @@ TriangleMesh mesh_of(TriangleSoup soup) {
   return mesh;
 }
 
+/// Triangles or points.
+double size_of(const Input& reference) { return double(reference.soup.triangles.size() + reference.points.size()); }
+
+MeshDistance distance_of(const TriangleMesh& mesh, Input reference, Context& context) {
+  if (!reference.points.empty()) return measure_distance(mesh, reference.points, context);
+  return measure_distance(mesh, mesh_of(std::move(reference.soup)), context, {kSamples, true});
+}
+
 /// What gates ask of a topology, from the counts. Where no edge is wrong, fans through all edges are those of
 /// manifolds.
 MeshTopology topology_of(const ComplexCounts& c) {
@@ -65,12 +73,13 @@ MeshInfo mesh_info(const std::function<Input()>& read_mesh, const std::function<
     mesh = read_mesh();
     if (read_reference) reference = read_reference();
   });
-  meter.expect(expected_work_of_info(double(mesh.soup.triangles.size()),
-                                     reference ? double(reference->soup.triangles.size()) : 0));
+  meter.expect(expected_work_of_info(double(mesh.soup.triangles.size()), reference ? size_of(*reference) : 0));
   if (mesh.facts.kind != InputKind::mesh)
     refuse(mesh.facts.name() + " is no mesh but " + kind_name(mesh.facts.kind) + "; make a mesh of it by vdb_isomesh");
   if (reference && reference->stage)
     refuse(reference->facts.name() + " is a stage file; give the surface that it is of");
+  if (reference && !reference->points.empty() && gates.normal_deviation_deg)
+    refuse("--require normal-deviation compares surfaces, and " + reference->facts.name() + " is points; leave it out");
   MeshInfo info;
   info.mesh = mesh.facts;
   info.dirt = mesh.soup.dirt;
@@ -81,10 +90,7 @@ MeshInfo mesh_info(const std::function<Input()>& read_mesh, const std::function<
          [&] { info.regions = take_region_census(measured, context, info.census.intersecting_pairs); });
   if (reference) {
     info.reference = reference->facts;
-    const TriangleMesh other = mesh_of(std::move(reference->soup));
-    step("distance", context, meter, [&] {
-      info.distance = measure_distance(measured, other, context, {kSamples, true});
-    });
+    step("distance", context, meter, [&] { info.distance = distance_of(measured, std::move(*reference), context); });
   }
   info.missed_gates = missed_of(info, measured, gates);
   meter.finish();
@@ -93,7 +99,12 @@ MeshInfo mesh_info(const std::function<Input()>& read_mesh, const std::function<
 
 MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell, const TellProgress& progress) {
   std::function<Input()> read_reference;
-  if (request.reference) read_reference = [&] { return read_input(*request.reference, context, tell); };
+  if (request.reference)
+    read_reference = [&] {
+      InputRequest reference = *request.reference;
+      reference.keep_points = true;
+      return read_input(reference, context, tell);
+    };
   return mesh_info([&] { return read_input(request.mesh, context, tell); }, read_reference, request.gates, context,
                    progress);
 }

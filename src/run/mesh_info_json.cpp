@@ -90,7 +90,8 @@ Json valence_json(const ValenceCounts& v) {
           {"interior_histogram", v.interior_with}};
 }
 
-Json side_json(const OneSidedDistance& d, const NormalDeviation& normals, double diagonal) {
+/// Without normals where points are measured, which have none.
+Json side_json(const OneSidedDistance& d, const NormalDeviation* normals, double diagonal) {
   const auto pct = [&](double world) { return diagonal > 0 ? Json(100 * world / diagonal) : Json(); };
   return {{"mean", d.mean},
           {"rms", d.rms},
@@ -99,17 +100,23 @@ Json side_json(const OneSidedDistance& d, const NormalDeviation& normals, double
           {"mean_pct", pct(d.mean)},
           {"rms_pct", pct(d.rms)},
           {"max_pct", pct(d.max)},
-          {"normal_mean_deg", normals.mean_deg},
-          {"normal_max_deg", normals.max_deg}};
+          {"normal_mean_deg", normals ? Json(normals->mean_deg) : Json()},
+          {"normal_max_deg", normals ? Json(normals->max_deg) : Json()}};
 }
 
 Json distance_json(const std::optional<MeshDistance>& d) {
   if (!d) return nullptr;
+  if (d->is_one_way)
+    return {{"diagonal", d->diagonal},
+            {"hausdorff", nullptr},
+            {"hausdorff_pct", nullptr},
+            {"to_reference", nullptr},
+            {"from_reference", side_json(d->from_reference, nullptr, d->diagonal)}};
   return {{"diagonal", d->diagonal},
           {"hausdorff", d->largest()},
           {"hausdorff_pct", d->diagonal > 0 ? Json(100 * d->largest() / d->diagonal) : Json()},
-          {"to_reference", side_json(d->to_reference, d->normal_to_reference, d->diagonal)},
-          {"from_reference", side_json(d->from_reference, d->normal_from_reference, d->diagonal)}};
+          {"to_reference", side_json(d->to_reference, &d->normal_to_reference, d->diagonal)},
+          {"from_reference", side_json(d->from_reference, &d->normal_from_reference, d->diagonal)}};
 }
 
 }  // namespace

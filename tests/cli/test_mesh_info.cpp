@@ -82,6 +82,53 @@ TEST_CASE("mesh info: a gate that is missed ends with 6", "[cli][mesh_info]") {
   CHECK(folder.run("t.off --require max-deviation=0.001").status == 2);
 }
 
+TEST_CASE("mesh info: a cloud is measured from its points to the mesh, whatever has borders", "[cli][mesh_info]") {
+  cli::Folder folder;
+  folder.write("t.off", kTetrahedron);
+  folder.write("open.off", kOpen);
+  folder.write("cloud.xyz", "0.1 0.1 0\n0.2 0.2 -3\n0.2 0.3 0\n0.1 0.1 0\n0 0 1\n");
+  const auto info = info_of(folder, "open.off --ref cloud.xyz");
+  CHECK(info["reference"]["kind"] == "points");
+  CHECK(info["reference"]["vertices"] == 4);
+  const auto distance = info["distance"];
+  CHECK(distance["to_reference"].is_null());
+  CHECK(distance["hausdorff"].is_null());
+  const auto from = distance["from_reference"];
+  CHECK(from["max"].get<double>() == Approx(3));
+  CHECK(from["max_at_most"] == from["max"]);
+  CHECK(from["mean"].get<double>() == Approx(.75));
+  CHECK(from["rms"].get<double>() == Approx(1.5));
+  CHECK(from["normal_mean_deg"].is_null());
+  const auto table = folder.run("t.off --ref cloud.xyz");
+  CHECK(contains(table.out, "Distance from the points of the reference to the mesh"));
+  CHECK(contains(table.out, "not measured: they are no surface"));
+  CHECK_FALSE(contains(table.out, "normal deviation"));
+  CHECK(folder.run("t.off --ref cloud.xyz --require max-deviation=3.1").status == 0);
+  const auto far = folder.run("t.off --ref cloud.xyz --require max-deviation=2.9");
+  CHECK(far.status == 6);
+  CHECK(contains(far.err, "the points are up to 3 from the mesh"));
+  const auto normals = folder.run("t.off --ref cloud.xyz --require normal-deviation=5");
+  CHECK(normals.status == 2);
+  CHECK(contains(normals.err, "normal-deviation compares surfaces, and cloud.xyz is points; leave it out"));
+}
+
+TEST_CASE("mesh info: an open result is near to the cloud that it was made of", "[cli][mesh_info]") {
+  cli::Folder folder;
+  std::string points, grid = "OFF\n441 800 0\n", faces;
+  for (int i = 0; i < 441; ++i) {
+    const std::string at = std::to_string(i % 21) + " " + std::to_string(i / 21) + " 0\n";
+    points += at;
+    grid += at;
+    const int right = i + 1, above = i + 21;
+    if (i % 21 == 20 || i / 21 == 20) continue;
+    faces += "3 " + std::to_string(i) + " " + std::to_string(right) + " " + std::to_string(above) + "\n3 " +
+             std::to_string(right) + " " + std::to_string(above + 1) + " " + std::to_string(above) + "\n";
+  }
+  folder.write("cloud.xyz", points);
+  folder.write("sheet.off", grid + faces);
+  CHECK(info_of(folder, "sheet.off --ref cloud.xyz")["distance"]["from_reference"]["max"] == 0);
+}
+
 TEST_CASE("mesh info: a pattern of frames is refused as what another command takes", "[cli][mesh_info]") {
   cli::Folder folder;
   folder.write("t.0001.off", kTetrahedron);

@@ -50,6 +50,36 @@ TEST_CASE("run: groups of an OBJ file become regions with their names", "[cli]")
   }
 }
 
+TEST_CASE("run: solids of a text STL become regions with their names, and groups of what can hold them", "[cli]") {
+  Folder folder;
+  std::ofstream file(folder / "two.stl");
+  for (const auto& [name, soup] :
+       {std::pair{"left", shapes::box({0, 0, 0}, {1, 1, 1})}, std::pair{"right", shapes::box({1, 0, 0}, {2, 1, 1})}}) {
+    file << "solid " << name << "\n";
+    for (const auto& t : soup.triangles) {
+      file << "facet normal 0 0 0\nouter loop\n";
+      for (const uint32_t v : t)
+        file << "vertex " << soup.vertices[v].x << " " << soup.vertices[v].y << " " << soup.vertices[v].z << "\n";
+      file << "endloop\nendfacet\n";
+    }
+    file << "endsolid " << name << "\n";
+  }
+  file.close();
+  const auto r = folder.run("two.stl two.ply --regions groups" + kRun);
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  const TriangleSoup mesh = read_mesh((folder / "two.ply").string());
+  REQUIRE(mesh.regions.names.size() == 2);
+  CHECK(mesh.regions.names[0].name == "left");
+  CHECK(mesh.regions.names[1].name == "right");
+  const std::string run = "--vertices 600 --device cpu";
+  REQUIRE(folder.run("two.stl two.obj " + run).status == 0);
+  CHECK(contains(folder.content("two.obj"), "\ng right\nf "));
+  const auto lost = folder.run("two.stl out.stl --attributes group " + run);
+  CHECK(lost.status == 0);
+  CHECK(contains(lost.err, "two.stl: group dropped: STL files are written without attributes"));
+}
+
 TEST_CASE("run: regions with a sheet are read again as they were written", "[cli]") {
   Folder folder;
   TriangleSoup sheet;

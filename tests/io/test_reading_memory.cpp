@@ -101,7 +101,7 @@ std::string ply_of_sheet(bool is_text) {
          "\nproperty list uchar int vertex_indices\nproperty uchar label\nend_header\n" + body;
 }
 
-std::string stl_of_sheet(bool is_text) {
+std::string stl_of_sheet(bool is_text, bool has_solids = false) {
   std::string body;
   int facets = 0;
   const auto facet = [&](int x, int y) {
@@ -113,8 +113,10 @@ std::string stl_of_sheet(bool is_text) {
                       : raw(float(u)) + raw(float(v)) + raw(0.f);
     body += is_text ? "endloop\nendfacet\n" : std::string(2, '\0');
   };
-  for (int y = 0; y < 2 * kSide; ++y)
+  for (int y = 0; y < 2 * kSide; ++y) {
+    if (has_solids) body += "endsolid\nsolid row " + std::to_string(y) + "\n";
     for (int x = 0; x < kSide; ++x) facet(x, y);
+  }
   return is_text ? "solid s\n" + body + "endsolid s\n" : std::string(80, ' ') + raw(uint32_t(facets)) + body;
 }
 
@@ -178,17 +180,12 @@ std::string pcd_of_zeros(const std::string& data) {
 
 /// Files of each format that is read as a mesh or points; every row of the table of formats has some.
 std::multimap<std::string, std::string> files_of_formats() {
-  return {{"obj", obj_of_sheet()},
-          {"ply", ply_of_sheet(true)},
-          {"ply", ply_of_sheet(false)},
-          {"stl", stl_of_sheet(true)},
-          {"stl", stl_of_sheet(false)},
-          {"off", off_of_sheet()},
-          {"glb", glb_of_instances(40)},
-          {"gltf", glb_of_instances(40)},
-          {"xyz", xyz_of_sheet()},
-          {"pcd", pcd_of_zeros("binary")},
-          {"pcd", pcd_of_zeros("binary_compressed")}};
+  return {
+      {"obj", obj_of_sheet()},     {"ply", ply_of_sheet(true)},       {"ply", ply_of_sheet(false)},
+      {"stl", stl_of_sheet(true)}, {"stl", stl_of_sheet(true, true)}, {"stl", stl_of_sheet(false)},
+      {"off", off_of_sheet()},     {"glb", glb_of_instances(40)},     {"gltf", glb_of_instances(40)},
+      {"xyz", xyz_of_sheet()},     {"pcd", pcd_of_zeros("binary")},   {"pcd", pcd_of_zeros("binary_compressed")},
+  };
 }
 
 /// What was read under the limit, in vertices or points; -1: nothing, for want of memory.

@@ -19,7 +19,7 @@ std::string description(const MeshInfoProgram& program) {
   return program.name +
          " MESH [--ref INPUT] [options]\n\n"
          "Counts and measures a triangle mesh as it is stored: topology, shapes of triangles, self-intersections,\n"
-         "and with --ref how far it is from a surface.\n\n"
+         "and with --ref how far it is from a surface, or points are from it.\n\n"
          "MESH    a mesh (" +
          listed_endings(reads_mesh) + "); - reads standard input and needs --input-format" +
          (program.also_reads.empty() ? "" : ";\n        " + program.also_reads);
@@ -49,8 +49,8 @@ void describe(CLI::App& app, MeshInfoArguments& a, Raw& raw) {
   const char* measure = "Measures";
   option(measure, "--ref", raw.reference, "INPUT",
          "also measure distances and deviations of normals from this surface, both ways: a mesh (" +
-             listed_endings(reads_mesh) + "), a point cloud (" + listed_endings(reads_points) + ") or a volume (" +
-             listed_endings(reads_volume) + ")");
+             listed_endings(reads_mesh) + ") or a volume (" + listed_endings(reads_volume) +
+             "); or distances from the points of a cloud (" + listed_endings(reads_points) + ") to the mesh");
   option(measure, "--require", raw.require, "LIST",
          "exit with status 6 unless the mesh meets every requirement of this comma-separated list: " +
              listed_gates_of_meshes(true));
@@ -107,7 +107,10 @@ MeshInfoCommandLine parse_mesh_info(int argc, const char* const* argv, const Mes
   if (raw.json && !a.statistics.empty() && a.statistics != "-") refuse("--json and --stats exclude each other");
   if (raw.json) a.statistics = "-";
   a.request.mesh = named_input(raw.mesh, raw.format);
-  if (!raw.reference.empty()) a.request.reference = named_input(raw.reference, raw.reference_format);
+  if (!raw.reference.empty()) {
+    a.request.reference = named_input(raw.reference, raw.reference_format);
+    a.request.reference->keep_points = true;
+  }
   a.request.gates = parse_gates(raw.require);
   if (!raw.threads.empty()) {
     const int64_t threads = parse_count("--threads", raw.threads);

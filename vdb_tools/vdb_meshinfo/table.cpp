@@ -145,8 +145,7 @@ void add_quality(const MeshCensus& census, Table& table) {
   table.histogram("triangles by smallest angle, degrees from", s.smallest_angle_histogram, 0, 60);
 }
 
-void add_side(const char* title, const OneSidedDistance& d, const NormalDeviation& normals, double diagonal,
-              Table& table) {
+void add_side(const char* title, const OneSidedDistance& d, double diagonal, Table& table) {
   const auto row = [&](const char* name, double world) {
     table.row(name, Table::text_of(world) +
                         (diagonal > 0 ? " (" + Table::text_of(100 * world / diagonal) + " % of the diagonal)" : ""));
@@ -155,8 +154,23 @@ void add_side(const char* title, const OneSidedDistance& d, const NormalDeviatio
   row("mean", d.mean);
   row("RMS", d.rms);
   row("max", d.max);
+}
+
+void add_normals(const NormalDeviation& normals, Table& table) {
   table.number("normal deviation, mean", normals.mean_deg, " deg");
   table.number("normal deviation, max", normals.max_deg, " deg");
+}
+
+void add_distance(const MeshDistance& d, Table& table) {
+  if (d.is_one_way) {
+    add_side("Distance from the points of the reference to the mesh", d.from_reference, d.diagonal, table);
+    table.row("from the mesh to the points", "not measured: they are no surface");
+    return;
+  }
+  add_side("Distance to the reference", d.to_reference, d.diagonal, table);
+  add_normals(d.normal_to_reference, table);
+  add_side("Distance from the reference", d.from_reference, d.diagonal, table);
+  add_normals(d.normal_from_reference, table);
 }
 
 }  // namespace
@@ -166,11 +180,7 @@ std::string mesh_info_table(const MeshInfo& info) {
   add_topology(info, table);
   if (info.regions) add_regions(*info.regions, table);
   add_quality(info.census, table);
-  if (info.distance) {
-    const MeshDistance& d = *info.distance;
-    add_side("Distance to the reference", d.to_reference, d.normal_to_reference, d.diagonal, table);
-    add_side("Distance from the reference", d.from_reference, d.normal_from_reference, d.diagonal, table);
-  }
+  if (info.distance) add_distance(*info.distance, table);
   return table.text();
 }
 

@@ -49,6 +49,7 @@ struct InputRequest {
   LabelReading labels = {};                     ///< of a volume of labels
   VolumeCreases creases = VolumeCreases::none;  ///< of a volume or points; a run sets it by its features
   bool keep_open = false;                       ///< the same of borders; a run sets it by its boundary
+  bool keep_points = false;                     ///< of points: no surface is made of them
 };
 
 /// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or
@@ -69,18 +70,19 @@ struct InputFacts {
   std::string name() const { return path == "-" ? "standard input" : path; }
 };
 
-/// Either a surface or the products of an earlier run.
+/// Either a surface, or the products of an earlier run, or points.
 struct Input {
   InputFacts facts;
-  TriangleSoup soup;               ///< empty when there is a stage file
+  TriangleSoup soup;               ///< empty when there is a stage file, or points without a surface
+  std::vector<WorldPoint> points;  ///< different ones, where they were kept as points
   std::optional<StageFile> stage;  ///< its options are for the run to read
 };
 
-/// Reads a file of any kind, and makes a surface of points and volumes. Tells what was read, and warns of what of it
-/// could not be used. Throws: unreadable_input when the file is missing or of no known kind, usage for an isovalue of
-/// what is no volume and for LabelReading of what holds no labels, and as the readers of each kind do (mesh_file.h,
-/// point_file.h, volume_file.h, vdb_file.h); out_of_memory over the context's limit, and interrupted while labels
-/// become walls.
+/// Reads a file of any kind, and makes a surface of points, unless they are kept as points, and of volumes. Tells what
+/// was read, and warns of what of it could not be used. Throws: unreadable_input when the file is missing or of no
+/// known kind, usage for an isovalue of what is no volume and for LabelReading of what holds no labels, and as the
+/// readers of each kind do (mesh_file.h, point_file.h, volume_file.h, vdb_file.h); out_of_memory over the context's
+/// limit, and interrupted while labels become walls.
 Input read_input(const InputRequest& request, const Context& context, const Tell& tell = {});
 /// The same with a limit alone, if that is above 0.
 Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell = {});
@@ -92,5 +94,7 @@ Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const 
 Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell = {});
 Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell = {},
                VolumeCreases creases = VolumeCreases::of_sharp_bodies, bool keep_open = false);
+/// The same without a surface. Throws: nothing_to_mesh for no point; and as the other does.
+Input input_of_points(PointCloud cloud, const std::string& name, const Tell& tell = {});
 
 }  // namespace isoshell

@@ -13,7 +13,8 @@ namespace isoshell {
 /// one. Polygons are split by ear clipping, triangle strips unrolled. Attributes are the numbers of PLY's vertices and
 /// faces and its lists of texture coordinates; of OBJ colours behind positions (white where only others have one),
 /// texture coordinates, normals, materials, groups and objects; of glTF colours, texture coordinates, normals,
-/// materials and scalars whose names begin with _. Other lists are not taken. Integers region_inside and
+/// materials and scalars whose names begin with _; of text STL the names of solids as groups, where there are two.
+/// Other lists are not taken. Integers region_inside and
 /// region_outside of PLY's faces are regions, where both differ on every face; such faces are turned where FaceRegions
 /// wants it. The meshes of a glTF file stand where its nodes put them, and its up axis stays. Dirty geometry is dropped
 /// and counted in the result, a file that lies throws. Throws: unreadable_input (names file and line, element or byte,

@@ -40,6 +40,8 @@ struct PointSurfaceInfo {
   double voxel_size_world = 0;  ///< of the grid that the surface comes from; details below it are lost
   bool normals_given = false, normals_turned = false;
   bool normals_ignored = false;  ///< they do not stand on the planes of their neighbours; others were estimated
+  double unflat_part = 0;        ///< of the points whose normals were estimated, those that are near no plane together
+                                 ///< with their neighbours: most of them where the points fill a volume
   bool sharp = false;            ///< points lie on sharp sides, whose creases the surface has
   double held_part = 1;          ///< of the points, by area, those that are near to the surface
   double open_part = 0;          ///< of the surface's vertices, those that bridge where there are no points

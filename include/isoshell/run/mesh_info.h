@@ -17,7 +17,7 @@ namespace isoshell {
 
 struct MeshInfoRequest {
   InputRequest mesh;
-  std::optional<InputRequest> reference;  ///< anything that has a surface; without it no distance is measured
+  std::optional<InputRequest> reference;  ///< a surface or points; without it no distance is measured
   Gates gates;
 };
 
@@ -31,13 +31,14 @@ struct MeshInfo {
   std::vector<std::string> missed_gates;
 };
 
-/// Reads, counts and measures; nothing is repaired or snapped. Its stages are "read", "census", "regions", "distance".
-/// Result: the same for every number of threads. Throws: usage for a gate of curves, a gate of
-/// distances without a reference, a mesh that is no mesh and a reference that is a stage file; and as read_input,
-/// take_census, take_region_census and measure_distance do.
+/// Reads, counts and measures; nothing is repaired or snapped, and points of a reference stay points. Its stages are
+/// "read", "census", "regions", "distance". Result: the same for every number of threads. Throws: usage for a gate of
+/// curves, a gate of distances without a reference or of normals from points, a mesh that is no mesh and a reference
+/// that is a stage file; and as read_input, take_census, take_region_census and measure_distance do.
 MeshInfo mesh_info(const MeshInfoRequest& request, Context& context, const Tell& tell = {},
                    const TellProgress& progress = {});
-/// The same, with other ways of reading; the reference's is empty where there is none.
+/// The same, with other ways of reading; the reference's is empty where there is none, and keeps points as points where
+/// they are to be measured from.
 MeshInfo mesh_info(const std::function<Input()>& read_mesh, const std::function<Input()>& read_reference,
                    const Gates& gates, Context& context, const TellProgress& progress = {});
 

@@ -11,6 +11,7 @@
 #include "implicit/points/point_distances.h"
 #include "implicit/points/point_support.h"
 #include "implicit/points/trim_to_points.h"
+#include "implicit/points/unflat_points.h"
 #include "implicit/volumes/iso_surface.h"
 #include "isoshell/error.h"
 #include "isoshell/io/point_file.h"
@@ -169,6 +170,7 @@ TriangleSoup surface_of_points(const PointCloud& cloud, int64_t memory_limit_byt
   info.spacing_world = points.spacing;
   info.normals_turned = points.turned;
   info.normals_ignored = points.ignored;
+  if (!info.normals_given || points.ignored) info.unflat_part = unflat_part(position, tree);
   int64_t most = kMaxGrid;
   if (memory_limit_bytes > 0) most = std::min(most, memory_limit_bytes / 2 / kBytesPerVoxel);
   if (most < 1 << 15)

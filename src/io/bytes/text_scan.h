@@ -4,6 +4,7 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/parallel_ranges.h"
@@ -29,6 +30,14 @@ inline const char* line_end(const char* p, const char* end) {
   return found ? static_cast<const char*>(found) : end;
 }
 inline bool ends_token(const char* p, const char* end) { return p == end || *p == '\n' || is_blank(*p); }
+
+/// What stands in the line behind p, without the blanks around it.
+inline std::string_view rest_of_line(const char* p, const char* end) {
+  p = skip_blanks(p, end);
+  const char* last = line_end(p, end);
+  while (last > p && is_blank(last[-1])) --last;
+  return {p, size_t(last - p)};
+}
 
 bool parse_real_slowly(const char*& p, const char* end, double& value);
 

@@ -60,12 +60,4 @@ inline uint32_t resolve(const Text& text, const char* token, const ObjReference&
   return uint32_t(found);
 }
 
-/// What stands in the line behind p, without the blanks around it.
-inline std::string rest_of_line(const char* p, const char* end) {
-  p = skip_blanks(p, end);
-  const char* last = line_end(p, end);
-  while (last > p && is_blank(last[-1])) --last;
-  return {p, last};
-}
-
 }  // namespace isoshell

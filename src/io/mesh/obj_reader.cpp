@@ -70,7 +70,7 @@ void count_lines(const MeshSource& source, ObjChunk& chunk) {
     chunk.faces += line == ObjLine::face;
     chunk.has_names |= line == ObjLine::object || line == ObjLine::group || line == ObjLine::material;
     if (line != ObjLine::library) continue;
-    chunk.libraries.push_back(rest_of_line(p, end));
+    chunk.libraries.emplace_back(rest_of_line(p, end));
     source.take(kBytesPerName + 4 * int64_t(chunk.libraries.back().size()));
   }
 }
@@ -206,7 +206,7 @@ void read_faces(const MeshSource& source, const Text& text, const ObjCounts& all
     const ObjLine line = classify(p, end);
     so_far.add(line);
     for (ObjNames& names : chunk.names)
-      if (wanted.names && line == names.line) names.begin(source, rest_of_line(p, end));
+      if (wanted.names && line == names.line) names.begin(source, std::string(rest_of_line(p, end)));
     if (line != ObjLine::face) continue;
     --left;
     corners.clear();

@@ -1,5 +1,7 @@
-// STL, binary and text. Normals are passed over; corners are welded by position.
+// STL, binary and text. Normals are passed over; corners are welded by position. The solids of a text file are groups.
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
 
 #include "geometry/world_vector.h"
 #include "io/bytes/byte_order.h"
@@ -8,6 +10,7 @@
 #include "io/bytes/row_buffer.h"
 #include "io/bytes/text_scan.h"
 #include "io/faces/face_collector.h"
+#include "io/faces/face_corners.h"
 #include "io/faces/weld.h"
 #include "io/mesh/precision.h"
 #include "isoshell/error.h"
@@ -67,11 +70,20 @@ TriangleSoup read_binary(const MeshSource& source) {
   return join_soup(source, std::move(welded.vertices), faces);
 }
 
+// From this facet on they are of another solid, or of none.
+struct SolidStart {
+  size_t facet;           // of the chunk
+  std::string_view name;  // empty: none
+  double number = -1;     // of the name, among those of all chunks
+};
+
 struct TextFacets {
   TextChunk text{};
   std::vector<WorldPoint> corners;
   std::vector<uint32_t> corner_counts;  // of each facet
+  std::vector<SolidStart> solids;       // before the first one, the last one of the chunk before goes on
   int64_t first_corner = 0;
+  double number_before = -1;  // of the name of these facets
 };
 
 // Reads facets until the end of the chunk; all lines between facets but solid and endsolid are refused.
@@ -112,9 +124,22 @@ class FacetReader {
     } else if (take_word(p, end_, "endfacet")) {
       if (!in_facet_ || in_loop_) text_.refuse(token, "endfacet closes no facet");
       in_facet_ = false;
-    } else if (in_facet_ || !(take_word(p, end_, "solid") || take_word(p, end_, "endsolid"))) {
+    } else if (!in_facet_ && take_word(p, end_, "solid")) {
+      begin_solid(rest_of_line(p, end_));
+    } else if (!in_facet_ && take_word(p, end_, "endsolid")) {
+      begin_solid({});
+    } else {
       text_.refuse(token, quoted_token(token, end_) + " is no word of a text STL at this place");
     }
+  }
+
+  void begin_solid(std::string_view name) {
+    const size_t facet = out_.corner_counts.size();
+    if (out_.solids.empty() || out_.solids.back().facet < facet) {
+      make_room(source_, out_.solids, 1);
+      out_.solids.push_back({facet, name});
+    }
+    out_.solids.back().name = name;
   }
 
   void read_vertex(const char*& p) {
@@ -161,6 +186,50 @@ void require_endsolid(const Text& text) {
     text.refuse(p, "the file ends without endsolid; it is truncated, restore it");
 }
 
+constexpr int64_t kBytesPerName = 256;  // of a solid, beside four times its letters
+
+// Numbers the names of solids, each once, in the order of their first facets. None where all facets are of one.
+std::vector<std::string> number_solids(const MeshSource& source, std::vector<TextFacets>& parts) {
+  std::vector<std::string> names;
+  std::unordered_map<std::string_view, double> number = {{"", -1}};
+  double now = -1;
+  bool has_unnamed = false;
+  for (TextFacets& part : parts) {
+    part.number_before = now;
+    for (SolidStart& solid : part.solids) {
+      if (&part == &parts.back() && solid.facet == part.corner_counts.size()) break;  // no facet follows it
+      const auto [at, is_new] = number.emplace(solid.name, double(names.size()));
+      if (is_new) {
+        source.take(kBytesPerName + 4 * int64_t(solid.name.size()));
+        names.emplace_back(solid.name);
+      }
+      now = solid.number = at->second;
+      has_unnamed |= solid.name.empty();
+    }
+  }
+  if (names.size() + size_t(has_unnamed) < 2) names.clear();
+  return names;
+}
+
+// The names as groups of the triangles.
+Attribute groups_of_solids(const MeshSource& source, std::vector<std::string> names,
+                           const std::vector<TextFacets>& parts, const std::vector<FaceCollector>& faces) {
+  Attribute group{kGroupName, NumberType::i32, 1, {}, AttributeDomain::face, {}, std::move(names)};
+  const std::vector<size_t> first = triangles_first(faces);
+  resize_counted(source, group.values, first.back());
+  for_each_chunk(int64_t(parts.size()), [&](int64_t i) {
+    const TextFacets& part = parts[size_t(i)];
+    double* value = group.values.data() + first[size_t(i)];
+    double now = part.number_before;
+    auto next = part.solids.begin();
+    for (const uint32_t facet : faces[size_t(i)].face_of()) {
+      for (; next != part.solids.end() && next->facet <= facet; ++next) now = next->number;
+      *value++ = now;
+    }
+  });
+  return group;
+}
+
 TriangleSoup read_text(const MeshSource& source) {
   const Text text(source);
   require_endsolid(text);
@@ -180,7 +249,9 @@ TriangleSoup read_text(const MeshSource& source) {
     release(source, part.corners);
   });
   WeldedCorners welded = weld_corners(source, corner_count, CornerArray{corners.data()});
-  std::vector<FaceCollector> faces(parts.size(), FaceCollector(welded.vertices));
+  std::vector<std::string> solids = number_solids(source, parts);
+  const auto keep = solids.empty() ? FaceCollector::Keep::triangles : FaceCollector::Keep::faces_too;
+  std::vector<FaceCollector> faces(parts.size(), FaceCollector(welded.vertices, keep));
   for_each_chunk(part_count, [&](int64_t i) {
     const uint32_t* at = reinterpret_cast<const uint32_t*>(welded.index.data()) + parts[size_t(i)].first_corner;
     for (const uint32_t count : parts[size_t(i)].corner_counts) {
@@ -188,7 +259,9 @@ TriangleSoup read_text(const MeshSource& source) {
       at += count;
     }
   });
-  return join_soup(source, std::move(welded.vertices), faces);
+  TriangleSoup soup = join_soup(source, std::move(welded.vertices), faces);
+  if (!solids.empty()) soup.attributes = {groups_of_solids(source, std::move(solids), parts, faces)};
+  return soup;
 }
 
 }  // namespace
