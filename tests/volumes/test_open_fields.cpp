@@ -70,7 +70,11 @@ TEST_CASE("jumps: values that are no distances, and distances of voxels that are
           "[volume][unit]") {
   const auto surface = [](const std::vector<float>& values, const WorldPoint& spacing, VolumeInfo& info) {
     constexpr int64_t n = 24;
-    const DenseVolume volume{values.data(), {n, n, n}, {n * n, n, 1}, spacing, {0, 0, 0}};
+    const DenseVolume volume{values.data(),
+                             {n, n, n},
+                             {n * n, n, 1},
+                             {WorldPoint{spacing.x, 0, 0}, {0, spacing.y, 0}, {0, 0, spacing.z}},
+                             {0, 0, 0}};
     return surface_of_volume(volume, "mine", {"", {}, 0, VolumeCreases::none, VolumeSides::open, false, true}, info);
   };
   const auto values_of = [](const auto& value) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -29,8 +30,10 @@ struct AffineMap {
   double at[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 };
 
-inline AffineMap lattice_map(const WorldPoint& spacing, const WorldPoint& origin) {
-  return {{{spacing.x, 0, 0, origin.x}, {0, spacing.y, 0, origin.y}, {0, 0, spacing.z, origin.z}}};
+/// Of a lattice by its steps along its axes.
+inline AffineMap lattice_map(const std::array<WorldPoint, 3>& step, const WorldPoint& origin) {
+  const auto& [x, y, z] = step;
+  return {{{x.x, y.x, z.x, origin.x}, {x.y, y.y, z.y, origin.y}, {x.z, y.z, z.z, origin.z}}};
 }
 
 /// Whether all of it is finite and it has an inverse.
