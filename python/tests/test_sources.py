@@ -259,7 +259,7 @@ def test_a_periodic_volume_may_be_mirrored_and_have_its_axes_in_another_order():
 def test_values_that_are_no_numbers_leave_the_surface_open_beside_them():
     values, spacing, origin = ball_values()
     values[:, :, 12:] = np.nan
-    with pytest.warns(isoshell.RunWarning, match="are no numbers, and its surface is open in"):
+    with pytest.warns(isoshell.RunWarning, match="are not known, and its surface is open in"):
         half = isoshell.remesh(isoshell.Volume(values, spacing, origin), boundary="keep", **SMALL)
     assert half.report["topology"]["boundary_loops"] == 1
     assert half.vertices[:, 2].max() <= origin[2] + 11 * spacing[2] + 1e-3

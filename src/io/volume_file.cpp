@@ -203,10 +203,10 @@ TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& optio
 TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info) {
   if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with a volume");
   const bool nano = source.size() >= 7 && std::memcmp(source.begin(), "NanoVDB", 7) == 0;
-  const std::unique_ptr<ScalarField> field =
-      nano ? read_nano_volume(source, options) : read_vdb_volume(source, options);
+  std::unique_ptr<ScalarField> field = nano ? read_nano_volume(source, options) : read_vdb_volume(source, options);
   field->file = source.name();
   check_map(*field);
+  if (field->is_band_alone()) field = with_points_beside_band(std::move(field), options.memory_limit_bytes);
   return described_surface_of(*field, options, info);
 }
 

@@ -112,6 +112,10 @@ class ScalarField {
   /// sides.
   virtual std::unique_ptr<ScalarField> continued() const { return nullptr; }
 
+  /// A level set whose background is 0: it says nothing of what lies beyond the band, where a value that nobody set is
+  /// not known.
+  bool is_band_alone() const { return background == 0 && grid_class == "level set"; }
+
   std::string title() const { return file + ": grid \"" + name + "\""; }
 
   std::string file, name, grid_class;
