@@ -138,7 +138,7 @@ class Volume:
     Args:
         values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
             array begins with z, give values.transpose(2, 1, 0): that takes no copy.
-        spacing: world units from a value to the next, one number or one an axis.
+        spacing: world units from a value to the next, above 0, one number or one an axis.
         origin: where values[0, 0, 0] stands, world units.
         velocities: (X, Y, Z, 3) world units a frame, used as float32: where the surface goes until the next frame of
             remesh_sequence(); NaN where nothing is known.
@@ -149,17 +149,22 @@ class Volume:
         periodic: axes of the array, as "x,y,z", along which it goes on with its first values, as a gyroid does: the
             result is one period, a region with the label 1, and opposite sides have the same triangles, translated.
             It has creases at its sides alone, and beside these keeps an eighth of a cell from the places of values. No
-            sizing field has this.
+            sizing field has this. An affine must have the array's axes along those of the world.
+        affine: (4, 4), from (i, j, k, 1) to world units, as nibabel has it; instead of spacing and origin. It may turn,
+            skew and mirror: the surface is that of the array, moved by it. Errors of code USAGE are one of another
+            shape, with a last row other than 0, 0, 0, 1, or without an inverse, and one beside spacing or origin.
     """
 
     def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None,
-                 sides: Optional[str] = None, periodic: str = "") -> None:
+                 sides: Optional[str] = None, periodic: str = "", affine: Any = None) -> None:
         self.values = values
         self.spacing = spacing
         self.origin = origin
         self.velocities = velocities
         self.sides = sides
         self.periodic = periodic
+        self.affine = affine
 
     def __repr__(self) -> str:
-        return f"<isoshell.Volume: {lattice_text(self.values)}, spacing {self.spacing}, origin {self.origin}>"
+        place = f"spacing {self.spacing}, origin {self.origin}" if self.affine is None else "with an affine"
+        return f"<isoshell.Volume: {lattice_text(self.values)}, {place}>"

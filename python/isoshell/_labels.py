@@ -5,18 +5,17 @@ from __future__ import annotations
 import numbers
 import operator
 import os
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
 from . import _isoshell
-from ._arrays import array_of, axes_of, masked_array_of, triple_of
+from ._arrays import axes_of, masked_array_of
 from ._errors import Error, warn
 from ._inputs import lattice_text
+from ._lattice import origin_and_steps_of
 from ._paths import path_text
 
 if TYPE_CHECKING:
     import numpy as np
-
-    Triple = Tuple[float, float, float]
 
 LEAST_SMOOTHING = 0.05  # voxels that part walls which touch one another in edges
 INT32 = (-(2**31), 2**31 - 1)
@@ -88,10 +87,7 @@ def values_of(labels: Labels) -> np.ndarray[Any, Any]:
 
 def lattice_of(labels: Labels) -> _isoshell.LabelLattice:
     """Where the voxels are, and what their regions are called."""
-    if labels.affine is None:
-        origin, steps = _of_spacing(labels.spacing, labels.origin)
-    else:
-        origin, steps = _of_affine(labels)
+    origin, steps = origin_and_steps_of(labels)
     names = {label_of("a key of names", label): _name(label, name) for label, name in labels.names.items()}
     return _isoshell.LabelLattice(origin, steps, label_of("background", labels.background), names,
                                   label_of("smallest_island", labels.smallest_island),
@@ -103,32 +99,6 @@ def _smoothing(value: Any) -> float:
     if not is_number or not (value == 0 or LEAST_SMOOTHING <= value <= 1):
         raise Error(f"smoothing is {value!r}; it must be a number from {LEAST_SMOOTHING} to 1, or 0 for the faces of voxels")
     return float(value)
-
-
-def _of_spacing(spacing: Any, origin: Any) -> tuple[Triple, list[Triple]]:
-    x, y, z = triple_of("spacing", spacing)
-    if not min(x, y, z) > 0:
-        raise Error(f"spacing must be above 0, and is {(x, y, z)}; a volume that is mirrored needs affine")
-    return triple_of("origin", origin), [(x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)]
-
-
-def _of_affine(labels: Labels) -> tuple[Triple, list[Triple]]:
-    import numpy as np
-
-    if triple_of("spacing", labels.spacing) != (1, 1, 1) or triple_of("origin", labels.origin) != (0, 0, 0):
-        raise Error("affine says spacing and origin already; leave them out")
-    matrix = array_of("affine", labels.affine).astype(np.float64)
-    if matrix.shape != (4, 4):
-        raise Error(f"affine must have the shape (4, 4), and has {matrix.shape}")
-    if not np.array_equal(matrix[3], (0, 0, 0, 1)):
-        raise Error(f"the last row of affine must be 0, 0, 0, 1, and is {', '.join(f'{v:g}' for v in matrix[3])}")
-    first, second, third, origin = (_as_triple(matrix[:3, column]) for column in range(4))
-    return origin, [first, second, third]
-
-
-def _as_triple(numbers: np.ndarray[Any, Any]) -> Triple:
-    x, y, z = numbers.tolist()
-    return x, y, z
 
 
 def joined_regions(source: str, parts: Sequence[Optional[Mapping[str, Any]]]) -> Optional[dict[str, Any]]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequence, Tuple, Union
 
-from ._arrays import array_of, axes_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, shape_of, triple_of
+from ._arrays import array_of, axes_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, shape_of
 from ._exchange import format_of, taken
 from ._errors import Error
 from ._inputs import Mesh, Points, Volume
 from ._isoshell import RunResult, Source
 from ._labels import INT32, Labels, label_of, lattice_of, values_of
+from ._lattice import origin_and_steps_of
 from ._paths import encodable, path_text
 from ._result import Result
 from ._usd import is_usd
@@ -111,7 +112,7 @@ def source_of(given: Any, sizing: Any = None) -> Source:
     """The source that what is opened means, with a sizing field that is in memory."""
     source = _source_of(given)
     if isinstance(sizing, Volume):
-        source.set_sizing(*_lattice_of("sizing", sizing, floats_or_nan))
+        source.set_sizing(floats_or_nan("sizing", sizing.values), *origin_and_steps_of(sizing))
     elif sizing is not None:
         lengths = floats_or_nan("sizing", sizing)
         if lengths.ndim != 1:
@@ -126,7 +127,7 @@ def frame_source_of(given: Any, sizing: Any = None) -> Source:
     source = source_of(given, sizing)
     if isinstance(given, Volume) and given.velocities is not None:
         vectors = _vectors_of(given.velocities, shape_of(given.values))
-        source.set_velocities(vectors, triple_of("spacing", given.spacing), triple_of("origin", given.origin))
+        source.set_velocities(vectors, *origin_and_steps_of(given))
     elif isinstance(given, Mesh) and given.velocities is not None:
         vertices = array_of("vertices", given.vertices)
         source.set_velocities_of_vertices(_vectors_of(given.velocities, vertices.shape[:1]), vertices,
@@ -152,7 +153,7 @@ def _source_of(given: Any) -> Source:
             raise Error(f'sides must be "sample", "cell" or "open", and is {given.sides!r}')
         is_mask, periodic = is_true_or_false(given), axes_of("periodic", given.periodic)
         sides = given.sides or ("cell" if is_mask and not any(periodic) else "")
-        return Source.volume(*_lattice_of("volume", given), sides, is_mask, periodic)
+        return Source.volume(_values_of("volume", given.values), *origin_and_steps_of(given), sides, is_mask, periodic)
     if isinstance(given, Labels):
         return Source.labels(values_of(given), lattice_of(given))
     if isinstance(given, (tuple, list)) and len(given) == 2:
@@ -342,13 +343,6 @@ def _counted_faces(faces: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], n
     is_corner = np.ones(faces.size, bool)
     is_corner[heads] = False
     return faces[heads], faces[is_corner]
-
-
-def _lattice_of(argument: str, volume: Volume,
-                read: Any = None) -> tuple[Any, tuple[float, float, float], tuple[float, float, float]]:
-    values: np.ndarray[Any, Any] = (read or _values_of)(argument, volume.values)
-    return (values, triple_of("spacing", volume.spacing),
-            triple_of("origin", volume.origin))
 
 
 def _values_of(argument: str, values: Any) -> np.ndarray[Any, Any]:

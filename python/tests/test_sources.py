@@ -188,10 +188,78 @@ def test_intersections_that_angles_end_once_they_are_widened_are_none(seed):
     assert made.report["topology"]["boundary_loops"] == 1 and made.report["topology"]["self_intersections"] == 0
 
 
+TURNED = np.array([[-0.1, 0.03, 0, 4], [0.02, 0.09, 0.05, -2], [0.01, -0.04, 0.11, 7], [0, 0, 0, 1.0]])  # and mirrored, skewed
+
+
+def turned_ball(shape=(44, 40, 36)):
+    """Distances in the world from a ball of radius 1 where TURNED puts the middle of the array, which is returned, too."""
+    at = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1) @ TURNED[:3, :3].T + TURNED[:3, 3]
+    middle = TURNED[:3] @ [*((np.array(shape) - 1) / 2), 1]
+    return np.linalg.norm(at - middle, axis=-1) - 1, middle
+
+
+def check_ball(result, middle):
+    about = result.vertices - middle
+    assert result.report["topology"]["closed"]
+    assert np.allclose(np.linalg.norm(about, axis=1), 1, atol=0.01)
+    corners = about[result.faces].transpose(1, 0, 2)
+    parts = np.einsum("ij,ij->i", corners[0], np.cross(corners[1], corners[2])) / 6
+    assert np.all(parts > 0)  # faces look outward
+    assert parts.sum() == pytest.approx(4 / 3 * np.pi, rel=0.03)
+    assert np.allclose((parts[:, None] * corners.mean(axis=0)).sum(axis=0) / parts.sum(), 0, atol=0.005)
+
+
+def test_an_affine_puts_a_volume_where_spacing_and_origin_do_to_the_same_bytes():
+    values, spacing, origin = ball_values()
+    affine = np.diag([*spacing, 1.0])
+    affine[:3, 3] = origin
+    for kind, options in ((values, {}), (values < 0, {}), (1 - values, {"iso": 0.8})):
+        assert digest(isoshell.Volume(kind, affine=affine), **options) == digest(isoshell.Volume(kind, spacing, origin), **options)
+    lengths = 0.1 + 0.1 * np.abs(values)
+    assert (digest(isoshell.Volume(values, spacing, origin), sizing=isoshell.Volume(lengths, affine=affine))
+            == digest(isoshell.Volume(values, spacing, origin), sizing=isoshell.Volume(lengths, spacing, origin)))
+
+
+def test_a_volume_may_be_turned_skewed_and_mirrored():
+    values, middle = turned_ball()
+    options = {"vertices": 1500}
+    check_ball(isoshell.remesh(isoshell.Volume(values, affine=TURNED), **options), middle)
+    check_ball(isoshell.remesh(isoshell.Volume(300 - values, affine=TURNED), iso=300, **options), middle)
+    check_ball(isoshell.remesh(isoshell.Volume(values[::-1], affine=TURNED @ [[-1, 0, 0, 43], [0, 1, 0, 0], [0, 0, 1, 0],
+                                                                              [0, 0, 0, 1]]), **options), middle)
+
+
+def test_a_sizing_field_may_be_turned(ball):
+    finer = isoshell.Volume(np.where(np.arange(24) < 12, 0.05, 0.2)[:, None, None] * np.ones((24, 24, 24)),
+                            affine=[[0, 0.1, 0, -1.15], [0, 0, -0.1, 1.15], [0.1, 0, 0, -1.15], [0, 0, 0, 1]])
+    made = isoshell.remesh(ball, sizing=finer, vertices=1000)
+    low = np.count_nonzero(made.vertices < 0, axis=0) / len(made.vertices)
+    assert np.allclose(low[:2], 0.5, atol=0.03) and low[2] > 0.7  # the array's first axis is z
+
+
+def test_a_periodic_volume_may_be_mirrored_and_have_its_axes_in_another_order():
+    at = np.arange(24) * 2 * np.pi / 24
+    x, y, z = np.meshgrid(at, at, at, indexing="ij")
+    gyroid = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x) + 0.3 * np.cos(x)
+    affine = [[0, 0.5, 0, 3], [1e-17, 0, -0.5, 2], [0.5, 0, 0, 1], [0, 0, 0, 1]]  # nearly 0, as turns by angles leave it
+    options = {"iso": 0, "vertices": 1500}
+    made = isoshell.remesh(isoshell.Volume(gyroid, affine=affine, periodic="x,y,z"), **options)
+    expected = isoshell.remesh(isoshell.Volume(gyroid, spacing=0.5, periodic="x,y,z"), **options)
+    assert volume_of(made) == pytest.approx(volume_of(expected), rel=0.002)
+    assert np.allclose([made.vertices.min(axis=0), made.vertices.max(axis=0)], [[3, -10, 1], [15, 2, 13]])
+    for axis, (low, high) in enumerate([(3, 15), (-10, 2), (1, 13)]):
+        ends = [np.delete(made.vertices[made.vertices[:, axis] == end], axis, axis=1) for end in (low, high)]
+        assert len(ends[0]) > 20
+        assert np.allclose(*(end[np.lexsort(end.round(6).T)] for end in ends), atol=1e-9)
+    with pytest.raises(isoshell.Error, match="steps along the axes of the world") as caught:
+        isoshell.remesh(isoshell.Volume(gyroid, affine=TURNED, periodic="x"), **options)
+    assert caught.value.code == ErrorCode.USAGE
+
+
 def test_values_that_are_no_numbers_leave_the_surface_open_beside_them():
     values, spacing, origin = ball_values()
     values[:, :, 12:] = np.nan
-    with pytest.warns(isoshell.RunWarning, match="are no numbers, and its surface is open in"):
+    with pytest.warns(isoshell.RunWarning, match="are not known, and its surface is open in"):
         half = isoshell.remesh(isoshell.Volume(values, spacing, origin), boundary="keep", **SMALL)
     assert half.report["topology"]["boundary_loops"] == 1
     assert half.vertices[:, 2].max() <= origin[2] + 11 * spacing[2] + 1e-3
@@ -203,7 +271,11 @@ def test_values_that_are_no_numbers_leave_the_surface_open_beside_them():
     (isoshell.Volume(np.zeros((3, 3, 3), complex)), "volume", ErrorCode.USAGE),
     (isoshell.Volume(np.zeros((3, 3, 3)), spacing=0), "spacing", ErrorCode.USAGE),
     (isoshell.Volume(np.zeros((3, 3, 3)), spacing=(1, 1)), "spacing", ErrorCode.USAGE),
-    (isoshell.Volume(np.zeros((3, 3, 3)), spacing=(1, -1, 1)), "spacing", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), spacing=(1, -1, 1)), "spacing must be above 0.*needs affine", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), affine=np.eye(3)), r"affine must have the shape \(4, 4\)", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), affine=np.ones((4, 4))), "the last row of affine", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), affine=np.diag([1, 1, 0, 1])), "span no volume", ErrorCode.USAGE),
+    (isoshell.Volume(np.zeros((3, 3, 3)), affine=np.eye(4), spacing=2), "affine says spacing", ErrorCode.USAGE),
     (isoshell.Volume(np.zeros((3, 3, 3)), origin=(0, np.nan, 0)), "origin", ErrorCode.USAGE),
     (isoshell.Volume(np.zeros((3, 3, 3))), "volume", ErrorCode.NOTHING_TO_MESH),
     (isoshell.Volume(np.arange(27.0).reshape(3, 3, 3) ** 2), "iso", ErrorCode.USAGE),

@@ -15,10 +15,6 @@ namespace nb = nanobind;
 namespace isoshell::python {
 namespace {
 
-using Triple = std::array<double, 3>;
-
-WorldPoint point_of(const Triple& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
-
 void write(const std::string& path, const AnyArray& labels, const LabelLattice& lattice, bool overwrite) {
   const LabelVolume volume = label_volume_of(labels, lattice);
   LabelWriteOptions options;

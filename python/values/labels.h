@@ -14,10 +14,15 @@
 
 namespace isoshell::python {
 
+/// Three numbers of Python.
+using Triple = std::array<double, 3>;
+
+inline WorldPoint point_of(const Triple& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
 /// What Python says of a volume beside its labels.
 struct LabelLattice {
-  std::array<double, 3> origin;                ///< the centre of the first voxel, world units
-  std::array<std::array<double, 3>, 3> steps;  ///< from a voxel to the next, along each axis of the array
+  Triple origin;                ///< the centre of the first voxel, world units
+  std::array<Triple, 3> steps;  ///< from a voxel to the next, along each axis of the array
   int32_t background = 0;
   std::map<int32_t, std::string> names;
   int64_t smallest_island_vox = 8;

@@ -33,7 +33,7 @@ namespace nb = nanobind;
 namespace isoshell::python {
 namespace {
 
-using Triple = std::array<double, 3>;
+using Steps = std::array<Triple, 3>;  // from a value to the next, along each axis of the array
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "arguments", message); }
 
@@ -114,20 +114,20 @@ Source points(const AnyArray& positions, const std::optional<AnyArray>& normals)
 }
 
 /// The lattice of the first three dimensions of an array.
-DenseVolume lattice(const float* first, const AnyArray& values, const Triple& spacing, const Triple& origin) {
+DenseVolume lattice(const float* first, const AnyArray& values, const Triple& origin, const Steps& steps) {
   DenseVolume v;
   v.values = first;
   for (size_t i = 0; i < 3; ++i) {
     v.size[i] = int64_t(values.shape(i));
     v.stride[i] = values.stride(i);
+    v.step_world[i] = point_of(steps[i]);
   }
-  v.spacing_world = {spacing[0], spacing[1], spacing[2]};
-  v.origin_world = {origin[0], origin[1], origin[2]};
+  v.origin_world = point_of(origin);
   return v;
 }
 
-DenseVolume dense_volume(const char* argument, const AnyArray& values, const Triple& spacing, const Triple& origin) {
-  return lattice(floats_of(argument, values, 3), values, spacing, origin);
+DenseVolume dense_volume(const char* argument, const AnyArray& values, const Triple& origin, const Steps& steps) {
+  return lattice(floats_of(argument, values, 3), values, origin, steps);
 }
 
 /// Python has looked whether there is such a name.
@@ -136,9 +136,9 @@ VolumeSides sides_named(const std::string& name, Boundary boundary) {
   return name == "open" ? VolumeSides::open : name == "cell" ? VolumeSides::cell : VolumeSides::sample;
 }
 
-Source volume(const AnyArray& values, const Triple& spacing, const Triple& origin, const std::string& sides,
-              bool is_mask, const std::array<bool, 3>& periodic) {
-  const DenseVolume v = dense_volume("volume", values, spacing, origin);
+Source volume(const AnyArray& values, const Triple& origin, const Steps& steps, const std::string& sides, bool is_mask,
+              const std::array<bool, 3>& periodic) {
+  const DenseVolume v = dense_volume("volume", values, origin, steps);
   return {"",
           [v, sides, is_mask, periodic](const RunRequest& request, const Context& context) {
             refuse_label_options(request);
@@ -170,9 +170,9 @@ Source labels(const AnyArray& values, const LabelLattice& lattice) {
           {}};
 }
 
-void set_velocities(Source& source, const AnyArray& vectors, const Triple& spacing, const Triple& origin) {
+void set_velocities(Source& source, const AnyArray& vectors, const Triple& origin, const Steps& steps) {
   const float* first = floats_of("velocities", vectors, 4);
-  const auto part = [&](int64_t axis) { return lattice(first + axis * vectors.stride(3), vectors, spacing, origin); };
+  const auto part = [&](int64_t axis) { return lattice(first + axis * vectors.stride(3), vectors, origin, steps); };
   source.velocity = [parts = std::array<DenseVolume, 3>{part(0), part(1), part(2)}] {
     return velocity_of(parts, "velocities");
   };
@@ -189,8 +189,8 @@ void set_velocities_of_vertices(Source& source, const AnyArray& velocities, cons
   };
 }
 
-void set_sizing(Source& source, const AnyArray& lengths, const Triple& spacing, const Triple& origin) {
-  source.sizing = sizing_of(dense_volume("sizing", lengths, spacing, origin), "sizing");
+void set_sizing(Source& source, const AnyArray& lengths, const Triple& origin, const Steps& steps) {
+  source.sizing = sizing_of(dense_volume("sizing", lengths, origin, steps), "sizing");
 }
 
 TriangleSoup& surface_in(Source& source) {
@@ -254,19 +254,20 @@ void bind_source(nb::module_& m) {
       .def_static("points", points, nb::arg("positions"), nb::arg("normals").none(),
                   nb::sig("def points(positions: typing.Any, normals: typing.Any) -> Source"))
       .def_static(
-          "volume", volume, nb::arg("values"), nb::arg("spacing"), nb::arg("origin"), nb::arg("sides"),
+          "volume", volume, nb::arg("values"), nb::arg("origin"), nb::arg("steps"), nb::arg("sides"),
           nb::arg("is_mask"), nb::arg("periodic"),
-          nb::sig("def volume(values: typing.Any, spacing: tuple[float, float, float], origin: tuple[float, "
-                  "float, float], sides: str, is_mask: bool, periodic: collections.abc.Sequence[bool]) -> Source"))
+          nb::sig("def volume(values: typing.Any, origin: collections.abc.Sequence[float], steps: "
+                  "collections.abc.Sequence[collections.abc.Sequence[float]], sides: str, is_mask: bool, periodic: "
+                  "collections.abc.Sequence[bool]) -> Source"))
       .def_static("labels", labels, nb::arg("values"), nb::arg("lattice"),
                   nb::sig("def labels(values: typing.Any, lattice: LabelLattice) -> Source"))
       .def("set_velocities_of_vertices", set_velocities_of_vertices, nb::arg("velocities"), nb::arg("vertices"),
            nb::arg("faces"),
            nb::sig("def set_velocities_of_vertices(self, velocities: typing.Any, vertices: typing.Any, faces: "
                    "typing.Any) -> None"))
-      .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("spacing"), nb::arg("origin"),
-           nb::sig("def set_sizing(self, lengths: typing.Any, spacing: tuple[float, float, float], origin: "
-                   "tuple[float, float, float]) -> None"))
+      .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("origin"), nb::arg("steps"),
+           nb::sig("def set_sizing(self, lengths: typing.Any, origin: collections.abc.Sequence[float], steps: "
+                   "collections.abc.Sequence[collections.abc.Sequence[float]]) -> None"))
       .def("set_sizing_of_vertices", set_sizing_of_vertices, nb::arg("lengths"),
            nb::sig("def set_sizing_of_vertices(self, lengths: typing.Any) -> None"))
       .def("set_regions", set_regions, nb::arg("labels"), nb::arg("background"), nb::arg("names"),
@@ -274,9 +275,9 @@ void bind_source(nb::module_& m) {
       .def("set_dropped", set_dropped, nb::arg("dropped"))
       .def("__getstate__", state_of)
       .def("__setstate__", [](Source& source, const std::string& path) { new (&source) Source(file(path)); })
-      .def("set_velocities", set_velocities, nb::arg("vectors"), nb::arg("spacing"), nb::arg("origin"),
-           nb::sig("def set_velocities(self, vectors: typing.Any, spacing: tuple[float, float, float], origin: "
-                   "tuple[float, float, float]) -> None"));
+      .def("set_velocities", set_velocities, nb::arg("vectors"), nb::arg("origin"), nb::arg("steps"),
+           nb::sig("def set_velocities(self, vectors: typing.Any, origin: collections.abc.Sequence[float], steps: "
+                   "collections.abc.Sequence[collections.abc.Sequence[float]]) -> None"));
   m.def(
       "split_polygons", split, nb::arg("name"), nb::arg("vertices"), nb::arg("sizes"), nb::arg("corners"),
       nb::sig("def split_polygons(name: str, vertices: typing.Any, sizes: typing.Any, corners: typing.Any) -> "

@@ -3,7 +3,9 @@
 
 #include <nanovdb/NanoVDB.h>
 
+#include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "voxel/leaf.h"
 
@@ -36,6 +38,11 @@ class Walk {
     out.value = [](const void* leaf, int offset) {
       return float(static_cast<const Leaf*>(leaf)->getValue(uint32_t(offset)));
     };
+    out.is_unset = [](const void* leaf, int offset) {
+      const auto* here = static_cast<const Leaf*>(leaf);
+      return !here->mValueMask.isOn(uint32_t(offset)) &&
+             std::abs(float(here->getValue(uint32_t(offset)))) <= step(*here);
+    };
     using Tile = typename Root::Tile;
     for (uint32_t n = 0; n < root->mTableSize; ++n) {
       const auto* tile = node<Tile>(at + int64_t(sizeof(Root)) + int64_t(n) * int64_t(sizeof(Tile)));
@@ -49,6 +56,14 @@ class Walk {
   }
 
  private:
+  /// By how much values differ at least from one another: packed ones are rounded to it.
+  static float step(const Leaf& leaf) {
+    if constexpr (std::is_floating_point_v<BuildT>)
+      return 0;
+    else
+      return leaf.mQuantum;
+  }
+
   /// A struct of the grid, wholly inside of it. `Bytes`: its size, where the type is only a name for it.
   template <class T, size_t Bytes = sizeof(T)>
   const T* node(int64_t at) const {

@@ -27,9 +27,10 @@ struct NanoVolume {
   std::vector<NanoLeafRef> leaves;
   std::vector<NanoTileRef> tiles;  ///< other than the background
   double background = 0;
-  double matrix[9] = {}, shift[3] = {};                    ///< world = matrix index + shift, rows first
-  float (*value)(const void* leaf, int offset) = nullptr;  ///< of a leaf's voxel, z fastest
-  std::string fault;                                       ///< what is wrong with the bytes; empty when sound
+  double matrix[9] = {}, shift[3] = {};                      ///< world = matrix index + shift, rows first
+  float (*value)(const void* leaf, int offset) = nullptr;    ///< of a leaf's voxel, z fastest
+  bool (*is_unset)(const void* leaf, int offset) = nullptr;  ///< whether it is inactive and 0, but for packing
+  std::string fault;                                         ///< what is wrong with the bytes; empty when sound
 };
 
 /// What a file's index says about a grid.

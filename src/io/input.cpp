@@ -172,7 +172,7 @@ class Reader {
       std::ostringstream open;
       if (volume.unknown_values > 0)
         open << counted(volume.unknown_values, "value")
-             << (volume.unknown_values == 1 ? " is no number" : " are no numbers") << ", and its";
+             << (volume.unknown_values == 1 ? " is not known" : " are not known") << ", and its";
       else
         open << "its distances jump, and its";
       open << " surface is open in " << counted(volume.open_cells, "cell") << " there, the first near " << at.x << ' '

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <sstream>
+#include <utility>
 
 #include "core/parallel_ranges.h"
 #include "geometry/common_step.h"
@@ -127,14 +128,21 @@ void check_map(const ScalarField& field) {
 }
 
 double step_world(const DenseVolume& volume) {
-  const WorldPoint& s = volume.spacing_world;
-  return common_step_world({s.x, s.y, s.z}, {volume.size[0], volume.size[1], volume.size[2]});
+  return common_step_world(volume.step_world, {volume.size[0], volume.size[1], volume.size[2]});
 }
 
-double coordinate(const WorldPoint& p, size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+/// With steps along the axes of the world, as those that common_step_world() allows are but for rounding.
+DenseVolume straightened(DenseVolume volume) {
+  for (WorldPoint& step : volume.step_world) {
+    const size_t axis = world_axis(step);
+    step = {axis == 0 ? step.x : 0, axis == 1 ? step.y : 0, axis == 2 ? step.z : 0};
+  }
+  return volume;
+}
 
 /// Whether options.is_periodic names an axis. Throws: usage where it does, for an array with a single value along an
-/// axis, with spacings that are not whole multiples of the shortest one, or whose sides are not those of its samples.
+/// axis, with steps that are not along the axes of the world and whole multiples of the shortest one, or whose sides
+/// are not those of its samples.
 bool check_periodic(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options) {
   const auto& axes = options.is_periodic;
   if (std::none_of(axes.begin(), axes.end(), [](bool is) { return is; })) return false;
@@ -144,7 +152,9 @@ bool check_periodic(const DenseVolume& volume, const std::string& name, const Vo
   if (*std::min_element(volume.size, volume.size + 3) < 2)
     refuse("a periodic volume has two values or more along each axis");
   if (step_world(volume) == 0)
-    refuse("a periodic volume has spacings that are whole multiples of the shortest one; resample it");
+    refuse(
+        "a periodic volume has steps along the axes of the world that are whole multiples of the shortest one; "
+        "resample it");
   return true;
 }
 
@@ -156,25 +166,29 @@ void set_periodic_regions(const DenseVolume& volume, const VolumeReadOptions& op
   regions.voxel_size_world = step_world(volume);
   regions.labels.assign(surface.triangles.size(), {1, 0});
   regions.side.assign(surface.triangles.size(), 0);
-  double low[3], high[3];
+  double low[3], high[3];  // by axes of the array
   double* const period_world[3] = {&regions.period_world.x, &regions.period_world.y, &regions.period_world.z};
   for (size_t axis = 0; axis < 3; ++axis) {
     const bool is_periodic = options.is_periodic[axis];
-    const double spacing = coordinate(volume.spacing_world, axis);
-    low[axis] = coordinate(volume.origin_world, axis);
-    high[axis] = spacing * double(is_periodic ? volume.size[axis] : volume.size[axis] - 1) + low[axis];
-    if (is_periodic) *period_world[axis] = spacing * double(volume.size[axis]);
+    const size_t world = world_axis(volume.step_world[axis]);
+    const double step = coordinate(volume.step_world[axis], world);
+    low[axis] = coordinate(volume.origin_world, world);
+    high[axis] = step * double(is_periodic ? volume.size[axis] : volume.size[axis] - 1) + low[axis];
+    if (step < 0) std::swap(low[axis], high[axis]);
+    if (is_periodic) *period_world[world] = std::abs(step) * double(volume.size[axis]);
   }
   for_each_index(size_t(0), surface.triangles.size(), [&](size_t t) {
-    const auto lies_at = [&](size_t axis, double place) {
+    const auto lies_at = [&](size_t world, double place) {
       const auto& corners = surface.triangles[t];
       return std::all_of(corners.begin(), corners.end(),
-                         [&](uint32_t v) { return coordinate(surface.vertices[v], axis) == place; });
+                         [&](uint32_t v) { return coordinate(surface.vertices[v], world) == place; });
     };
-    for (size_t axis = 0; axis < 3; ++axis)
-      regions.side[t] = uint8_t(lies_at(axis, low[axis])    ? 2 * axis + 1
-                                : lies_at(axis, high[axis]) ? 2 * axis + 2
-                                                            : regions.side[t]);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const size_t world = world_axis(volume.step_world[axis]);
+      regions.side[t] = uint8_t(lies_at(world, low[axis])    ? 2 * world + 1
+                                : lies_at(world, high[axis]) ? 2 * world + 2
+                                                             : regions.side[t]);
+    }
   });
 }
 
@@ -189,19 +203,20 @@ TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& optio
 TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info) {
   if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with a volume");
   const bool nano = source.size() >= 7 && std::memcmp(source.begin(), "NanoVDB", 7) == 0;
-  const std::unique_ptr<ScalarField> field =
-      nano ? read_nano_volume(source, options) : read_vdb_volume(source, options);
+  std::unique_ptr<ScalarField> field = nano ? read_nano_volume(source, options) : read_vdb_volume(source, options);
   field->file = source.name();
   check_map(*field);
+  if (field->is_band_alone()) field = with_points_beside_band(std::move(field), options.memory_limit_bytes);
   return described_surface_of(*field, options, info);
 }
 
-TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
+TriangleSoup surface_of_volume(const DenseVolume& given, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info) {
-  if (!check_periodic(volume, name, options)) {
-    DenseField field(volume, name, options);
+  if (!check_periodic(given, name, options)) {
+    DenseField field(given, name, options);
     return described_surface_of(field, options, info);
   }
+  const DenseVolume volume = straightened(given);
   VolumeReadOptions rounded = options;
   rounded.creases = VolumeCreases::none;
   DenseField field(volume, name, rounded);

@@ -1,5 +1,6 @@
 // Scalar grids of .nvdb files as fields: segments, each an index of its grids and then their bytes.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -113,10 +114,14 @@ class NanoField : public ScalarField {
     const auto leaf = std::lower_bound(volume_.leaves.begin(), volume_.leaves.end(), origin,
                                        [](const NanoLeafRef& a, Voxel b) { return before(a.origin, b); });
     if (leaf != volume_.leaves.end() && leaf->origin == origin) {
-      copy_block(size, to, [&](int i) { return volume_.value(leaf->leaf, i); });
+      if (is_band_alone())
+        copy_block(size, to,
+                   [&](int i) { return volume_.is_unset(leaf->leaf, i) ? NAN : volume_.value(leaf->leaf, i); });
+      else
+        copy_block(size, to, [&](int i) { return volume_.value(leaf->leaf, i); });
     } else {
       const float value = tile_value(origin);
-      copy_block(size, to, [&](int) { return value; });
+      copy_block(size, to, [&](int) { return is_band_alone() && value == 0 ? NAN : value; });
     }
   }
 

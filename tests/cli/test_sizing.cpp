@@ -67,7 +67,11 @@ TEST_CASE("sizing: lengths in memory are the field that a file of them is, and N
   Folder folder;
   const std::string path = (folder / "lengths.vdb").string();
   write_grids(path, {grid});
-  DenseVolume dense{values.data(), {kSide, kSide, kSide}, {kSide * kSide, kSide, 1}, {0.5, 0.5, 0.5}, {-1, 2, 3}};
+  DenseVolume dense{values.data(),
+                    {kSide, kSide, kSide},
+                    {kSide * kSide, kSide, 1},
+                    {WorldPoint{.5, 0, 0}, {0, .5, 0}, {0, 0, .5}},
+                    {-1, 2, 3}};
 
   std::vector<WorldPoint> points;
   for (int i = 0; i < 300; ++i) points.push_back({-1.3 + 0.0087 * i, 1.8 + 0.0071 * i, 4.6 - 0.0063 * i});
@@ -75,7 +79,7 @@ TEST_CASE("sizing: lengths in memory are the field that a file of them is, and N
   CHECK(at == read_sizing(path)->lengths_at(points));
   CHECK(std::count(at.begin(), at.end(), 0) > 0);
   CHECK(std::count(at.begin(), at.end(), 0) < 300);
-  dense.spacing_world.y = 0;
+  dense.step_world[1] = dense.step_world[0];
   CHECK_THROWS_AS(sizing_of(dense, "lengths"), Error);
 }
 

@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "geometry/world_vector.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
 #include "isoshell/io/mesh_file.h"
@@ -50,9 +51,7 @@ std::vector<float> ball_values(int64_t n) {
   return values;
 }
 
-DenseVolume volume_of(const std::vector<float>& values, int64_t n) {
-  return {values.data(), {n, n, n}, {n * n, n, 1}, {1, 1, 1}, {0, 0, 0}};
-}
+DenseVolume volume_of(const std::vector<float>& values, int64_t n) { return {values.data(), {n, n, n}, {n * n, n, 1}}; }
 
 TriangleSoup surface(const DenseVolume& volume, std::optional<double> iso = {}) {
   VolumeInfo info;
@@ -90,13 +89,36 @@ TEST_CASE("memory: the surface of an array is where its values are", "[memory_in
   const int64_t n = 20;
   const std::vector<float> values = ball_values(n);
   DenseVolume volume = volume_of(values, n);
-  volume.spacing_world = {1, 2, 0.5};
+  volume.step_world = {WorldPoint{1, 0, 0}, {0, 2, 0}, {0, 0, 0.5}};
   volume.origin_world = {10, -20, 30};
   const TriangleSoup soup = surface(volume);
   CHECK(is_closed(soup));
   CHECK(isoshell::volume(soup) > 0);
   for (const WorldPoint& p : soup.vertices)
     CHECK(std::hypot(p.x - 10 - 9.5, (p.y + 20) / 2 - 9.5, (p.z - 30) * 2 - 9.5) == Approx(6.3).margin(0.1));
+}
+
+TEST_CASE("memory: steps that turn, skew and mirror an array move its surface, which stays turned outward",
+          "[memory_input]") {
+  const int64_t n = 20;
+  const std::vector<float> values = ball_values(n);
+  DenseVolume volume = volume_of(values, n);
+  const TriangleSoup straight = surface(volume);
+  volume.step_world = {WorldPoint{-1, .25, .5}, {.5, 2, 0}, {.25, -.5, 1}};
+  volume.origin_world = {10, -20, 30};
+  TriangleSoup moved = surface(volume);
+  CHECK(is_closed(moved));
+  const auto& [x, y, z] = volume.step_world;
+  const double det = dot(x, cross(y, z));
+  REQUIRE(det < 0);
+  CHECK(isoshell::volume(moved) == Approx(-det * isoshell::volume(straight)));
+  REQUIRE(moved.vertices.size() == straight.vertices.size());
+  for (size_t v = 0; v < moved.vertices.size(); ++v) {
+    const WorldPoint& p = straight.vertices[v];
+    REQUIRE(length(moved.vertices[v] - (volume.origin_world + p.x * x + p.y * y + p.z * z)) < 1e-12);
+  }
+  for (auto& corners : moved.triangles) std::swap(corners[1], corners[2]);
+  CHECK(moved.triangles == straight.triangles);
 }
 
 TEST_CASE("memory: strides say the order of the axes", "[memory_input]") {
@@ -139,8 +161,8 @@ TEST_CASE("memory: an array without a surface is refused", "[memory_input]") {
   std::fill(values.begin(), values.end(), std::numeric_limits<float>::quiet_NaN());
   CHECK(
       contains(message_of(ErrorCode::nothing_to_mesh, [&] { surface(volume, 0); }), "none of its values is a number"));
-  volume.spacing_world.y = 0;
-  CHECK(contains(message_of(ErrorCode::usage, [&] { surface(volume, 0); }), "spacing"));
+  volume.step_world[1] = {2, 0, 1};
+  CHECK(contains(message_of(ErrorCode::usage, [&] { surface(volume, 0); }), "span no volume"));
   volume = volume_of(values, 3);
   volume.size[1] = 0;
   CHECK(contains(message_of(ErrorCode::usage, [&] { surface(volume, 0); }), "0 values along an axis"));

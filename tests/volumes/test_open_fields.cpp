@@ -18,9 +18,9 @@ namespace {
 
 /// A level set of half width 3 that a function gives inside of a box, written to a file.
 template <class Value>
-std::string level_set_file(const TemporaryFolder& folder, int32_t size, Value value) {
+std::string level_set_file(const TemporaryFolder& folder, int32_t size, Value value, float background = 3) {
   openvdb::initialize();
-  auto grid = openvdb::FloatGrid::create(3);
+  auto grid = openvdb::FloatGrid::create(background);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   auto to = grid->getAccessor();
   for (int32_t x = 0; x < size; ++x)
@@ -53,6 +53,22 @@ TEST_CASE("jumps: a band of a sheet is closed by the end of its band, or open wi
   CHECK(is_closed_2_manifold_by_edges(read_volume(path, options, open)));
 }
 
+TEST_CASE("jumps: where the band of a sheet ends whose background is 0 nothing is known, and the sheet is open",
+          "[volume][unit]") {
+  const TemporaryFolder folder;
+  const std::string path = level_set_file(
+      folder, 32, [](int32_t x, int32_t y, int32_t z) { return z - 15.3 + .05 * (x - y); }, 0);
+  VolumeInfo info;
+  const TriangleSoup sheet = read_volume(path, {}, info);
+  CHECK(info.open_cells > 50);
+  CHECK(info.unknown_values > 0);
+  CHECK(sheet.vertices.size() > 900);
+  for (const WorldPoint& p : sheet.vertices) {
+    if (std::max(std::abs(p.x - 15.5), std::abs(p.y - 15.5)) > 15.5) continue;  // beside the band as in its last voxel
+    REQUIRE(p.z == Approx(15.3 - .05 * (p.x - p.y)).margin(1e-3));
+  }
+}
+
 TEST_CASE("jumps: distances of a closed body have none, and it stays closed with --boundary keep", "[volume][unit]") {
   const TemporaryFolder folder;
   const std::string path = level_set_file(folder, 40, [](int32_t x, int32_t y, int32_t z) {
@@ -70,7 +86,11 @@ TEST_CASE("jumps: values that are no distances, and distances of voxels that are
           "[volume][unit]") {
   const auto surface = [](const std::vector<float>& values, const WorldPoint& spacing, VolumeInfo& info) {
     constexpr int64_t n = 24;
-    const DenseVolume volume{values.data(), {n, n, n}, {n * n, n, 1}, spacing, {0, 0, 0}};
+    const DenseVolume volume{values.data(),
+                             {n, n, n},
+                             {n * n, n, 1},
+                             {WorldPoint{spacing.x, 0, 0}, {0, spacing.y, 0}, {0, 0, spacing.z}},
+                             {0, 0, 0}};
     return surface_of_volume(volume, "mine", {"", {}, 0, VolumeCreases::none, VolumeSides::open, false, true}, info);
   };
   const auto values_of = [](const auto& value) {

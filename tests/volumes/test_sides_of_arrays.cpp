@@ -22,7 +22,7 @@ struct Array {
     for (int64_t x = 0; x < nx; ++x)
       for (int64_t y = 0; y < ny; ++y)
         for (int64_t z = 0; z < nz; ++z) values.push_back(float(value(x, y, z)));
-    volume = {values.data(), {nx, ny, nz}, {ny * nz, nz, 1}, {1, 1, 1}, {0, 0, 0}};
+    volume = {values.data(), {nx, ny, nz}, {ny * nz, nz, 1}};
   }
 
   TriangleSoup surface(VolumeSides sides, VolumeCreases creases = VolumeCreases::none) const {

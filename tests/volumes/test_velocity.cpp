@@ -82,8 +82,11 @@ TEST_CASE("velocity: from memory it is what it is from a file that holds the sam
   values[3 + 1] = std::numeric_limits<float>::quiet_NaN();
   std::array<DenseVolume, 3> parts;
   for (size_t axis = 0; axis < 3; ++axis)
-    parts[axis] = {
-        values.data() + axis, {kSide, kSide, kSide}, {3 * kSide * kSide, 3 * kSide, 3}, {0.5, 0.5, 0.5}, {-4, -4, -4}};
+    parts[axis] = {values.data() + axis,
+                   {kSide, kSide, kSide},
+                   {3 * kSide * kSide, 3 * kSide, 3},
+                   {WorldPoint{.5, 0, 0}, {0, .5, 0}, {0, 0, .5}},
+                   {-4, -4, -4}};
   const TemporaryFile file = written({grid});
   std::vector<WorldPoint> points = {{-4, -4, -3.5}, {-4.6, 0, 0}};
   for (int i = 0; i < 300; ++i) points.push_back({-4.2 + 0.027 * i, 4.1 - 0.023 * i, -3.9 + 0.021 * i});
@@ -98,7 +101,7 @@ TEST_CASE("velocity: from memory it is what it is from a file that holds the sam
   CHECK(std::isnan(here[0].x));
   values[0] = std::numeric_limits<float>::infinity();
   CHECK_THROWS_AS(velocity_of(parts, "velocities"), Error);
-  parts[0].spacing_world.y = 0;
+  parts[0].step_world[1] = {0, 0, 0};
   CHECK_THROWS_AS(velocity_of(parts, "velocities"), Error);
 }
 

@@ -1,5 +1,6 @@
 // Volumes as files: every kind of level set gives its surface, everything else says why not, and no damage does harm.
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <openvdb/tools/LevelSetUtil.h>
 #if __has_include(<nanovdb/util/OpenToNanoVDB.h>)
@@ -217,6 +218,35 @@ TEST_CASE("volume: a file cut anywhere, or with a changed byte, is read or refus
     } catch (const Error& error) {
       REQUIRE(error.code() != ErrorCode::internal);
     }
+  }
+}
+
+TEST_CASE(
+    "volume: a level set whose background is 0 is the surface that it is with another, whatever lies outside of it",
+    "[volume][stage]") {
+  const TemporaryFile file("zero.vdb"), usual("usual.vdb");
+  for (const double half_width : {1.1, 3.0, 8.0}) {
+    write(usual.path, {ball(half_width)});
+    const auto zero = ball(half_width);
+    openvdb::tools::changeBackground(zero->tree(), 0.f);  // inside and outside alike
+    REQUIRE(zero->tree().getValue({6, -8, 10}) == 0);
+    write(file.path, {zero});
+    const TriangleSoup soup = read(file.path);
+    CHECK(is_closed(soup));
+    CHECK(soup.triangles.size() == read(usual.path).triangles.size());
+    CHECK(distance_of(soup) < 0.0136);
+    VolumeReadOptions outer;
+    outer.iso = 0.3;
+    if (half_width >= 3) CHECK(distance_of(read(file.path, outer)) == Approx(0.3).margin(0.02));
+#ifdef ISOSHELL_TEST_NANO
+    const TemporaryFile nano("zero.nvdb");
+    nanovdb::io::writeGrid(nano.path, nanovdb::openToNanoVDB(*zero));
+    CHECK(read(nano.path).triangles == soup.triangles);
+    nanovdb::io::writeGrid(nano.path,
+                           nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, nanovdb::Fp8>(*zero));
+    CHECK(is_closed(read(nano.path)));
+    CHECK(distance_of(read(nano.path)) < 0.03);
+#endif
   }
 }
 

@@ -1,6 +1,7 @@
 // What a program may have in memory beside triangles and points: polygons, and values on a regular lattice.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,12 +23,14 @@ struct PolygonSoup {
 /// message calls the surface.
 TriangleSoup split_polygons(PolygonSoup polygons, const std::string& name);
 
-/// Value (i, j, k) stands at origin + (i, j, k) * spacing. Borrows the values.
+/// Value (i, j, k) stands at origin + i step[0] + j step[1] + k step[2]: steps may turn, skew and mirror the array.
+/// Borrows the values.
 struct DenseVolume {
   const float* values = nullptr;
   int64_t size[3] = {};    ///< values along each axis
   int64_t stride[3] = {};  ///< values from one to the next along each axis
-  WorldPoint spacing_world{1, 1, 1}, origin_world{0, 0, 0};
+  std::array<WorldPoint, 3> step_world{WorldPoint{1, 0, 0}, WorldPoint{0, 1, 0}, WorldPoint{0, 0, 1}};
+  WorldPoint origin_world{0, 0, 0};
 };
 
 /// The surface of a volume as read_volume extracts it, from values that no file gives a class. Without an isovalue they
@@ -35,8 +38,8 @@ struct DenseVolume {
 /// the array is outside. With an isovalue, the side of it that most values at the array's faces lie on is outside, too,
 /// or of a mask the lower one; without one the positive side. Where the body reaches a face, it ends as options.sides
 /// says. Values that are NaN are not known: beside them the surface is open. Throws: usage for an array without values
-/// or with a spacing that is not above 0; unreadable_input for an infinite value; nothing_to_mesh where none is a
-/// number; and as read_volume does.
+/// or with steps that span no volume, and for a periodic one whose steps are not along the axes of the world;
+/// unreadable_input for an infinite value; nothing_to_mesh where none is a number; and as read_volume does.
 TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info);
 

@@ -19,7 +19,7 @@ namespace isoshell {
 std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_t max_bytes = 0);
 
 /// The same from values in memory, which are copied; NaN is what an inactive voxel is in a file. `name` is what
-/// messages call the field. Throws: usage for an array without values or a spacing that is not above 0; as read_sizing
+/// messages call the field. Throws: usage for an array without values or steps that span no volume; as read_sizing
 /// does.
 std::shared_ptr<const SizingField> sizing_of(const DenseVolume& lengths, const std::string& name);
 

@@ -18,7 +18,7 @@ std::shared_ptr<const VelocityField> read_velocity(const std::string& path, cons
 
 /// The same from values in memory, which are copied: a volume for each component, all on the lattice of the first. A
 /// place where one is NaN is what an inactive voxel is in a file. `name` is what messages call the field. Throws: usage
-/// for a spacing that is not above 0; unreadable_input for a value that is infinite.
+/// for steps that span no volume; unreadable_input for a value that is infinite.
 std::shared_ptr<const VelocityField> velocity_of(const std::array<DenseVolume, 3>& components, const std::string& name);
 
 }  // namespace isoshell

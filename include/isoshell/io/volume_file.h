@@ -56,7 +56,7 @@ struct VolumeInfo {
   double iso = 0;
   double voxel_size_world = 0;  ///< longest edge of a voxel
   int64_t blocks = 0;           ///< of 8^3 voxels that hold values of their own
-  int64_t unknown_values = 0;   ///< that are not numbers, near the surface
+  int64_t unknown_values = 0;   ///< not numbers, or beyond the band of a level set
   int64_t open_cells = 0;       ///< in which the surface is open, beside these or where distances jump
   WorldPoint first_open_world{0, 0, 0};
   double jumping_part = 0;  ///< of the surface: where distances jump, as at the end of a band on one side of it alone
@@ -64,7 +64,8 @@ struct VolumeInfo {
 
 /// Reads one grid and extracts the surface on which its trilinear field has the value `iso`: closed, 2-manifold, with
 /// vertices where lattice edges cross it, or on its creases where these are kept, oriented towards the side on which
-/// the background lies. Beside values that are no numbers the surface is open. Without `iso` a grid of class unknown,
+/// the background lies. Beside values that are no numbers the surface is open, as it is where the band of a level set
+/// ends whose background is 0: an inactive 0 in one is no value. Without `iso` a grid of class unknown,
 /// or whose class says that it is unsigned, with no negative values that rise by one voxel's length a voxel holds
 /// unsigned distances. They get the signs of the two sides of their zero set first, so that it is one skin, closed over
 /// holes and with the hollows of nested surfaces. Every count and offset in the file is held to its bytes before

@@ -12,12 +12,11 @@ from . import package
 
 
 def taken(given: Any, options: dict[str, Any]) -> Any:
-    """Labels with the image's affine; with an isovalue, and where values are not whole, a Volume. Of the options, background,
-    smallest_island, smoothing and periodic, which are of labels, are taken out.
+    """Labels with the image's affine; with an isovalue, and where values are not whole, a Volume with it. Of the options,
+    background, smallest_island, smoothing and periodic, which are of labels, are taken out.
 
     Raises:
-        Error: of code USAGE for what is no image of three dimensions, for a Volume that is turned, and for
-            options that are not what Labels takes.
+        Error: of code USAGE for what is no image of three dimensions, and for options that are not what Labels takes.
     """
     import numpy as np
 
@@ -38,27 +37,7 @@ def taken(given: Any, options: dict[str, Any]) -> Any:
             if options.get(name) is not None:
                 setattr(labels, name, options.pop(name))
         return labels
-    return _volume_of(values, np.array(affine, float))
-
-
-def _volume_of(values: Any, affine: Any) -> Volume:
-    """Turned by right angles, and mirrored, as its affine says."""
-    import numpy as np
-
-    axes = affine[:3, :3]
-    of_world = np.abs(axes).argmax(axis=1)  # of each axis of the world that of the array
-    spacing = axes[np.arange(3), of_world]
-    straight = np.zeros((3, 3))
-    straight[np.arange(3), of_world] = spacing
-    if sorted(of_world.tolist()) != [0, 1, 2] or not np.allclose(axes, straight, atol=1e-6 * np.abs(axes).max()):
-        raise Error("the image's axes are not those of the world, and a volume of values is not turned; resample it, as "
-                    "nibabel.processing.resample_to_output does, or give labels")
-    values, origin = values.transpose(of_world), affine[:3, 3].copy()
-    for axis in range(3):
-        if spacing[axis] < 0:
-            values = np.flip(values, axis)
-            origin[axis] += spacing[axis] * (values.shape[axis] - 1)
-    return Volume(values, np.abs(spacing), origin)
+    return Volume(values, affine=np.array(affine, float))
 
 
 def read(path: str, options: dict[str, Any]) -> Any:

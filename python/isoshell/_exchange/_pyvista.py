@@ -92,9 +92,6 @@ def _taken_image(data: Any) -> Volume:
     """The active scalars, of its points or else of its cells."""
     import numpy as np
 
-    if not np.allclose(data.direction_matrix, np.eye(3)):
-        raise Error("source is an ImageData that is turned (direction_matrix), and a Volume is not; give isoshell.Labels "
-                    "an affine, or resample it")
     of_points, size = data.point_data.active_scalars, np.array(data.dimensions)
     values = of_points if of_points is not None else data.cell_data.active_scalars
     if values is None or np.ndim(values) != 1:
@@ -102,8 +99,10 @@ def _taken_image(data: Any) -> Volume:
                     "set_active_scalars")
     shape, shift = (size, 0.0) if of_points is not None else (np.maximum(size - 1, 1), 0.5)
     first = np.array(data.extent[::2]) + shift
-    return Volume(np.asarray(values).reshape(tuple(shape), order="F"), data.spacing,
-                  np.array(data.origin) + first * np.array(data.spacing))
+    affine = np.eye(4)
+    affine[:3, :3] = np.array(data.direction_matrix) * data.spacing
+    affine[:3, 3] = data.origin + affine[:3, :3] @ first
+    return Volume(np.asarray(values).reshape(tuple(shape), order="F"), affine=affine)
 
 
 def given(made: Result | Mesh) -> pyvista.PolyData:

@@ -97,7 +97,7 @@ def test_a_masked_value_of_a_volume_is_one_that_is_not_known():
     hidden[:, :, : values.shape[2] // 3] = True
 
     def made(some):
-        with pytest.warns(isoshell.RunWarning, match="are no numbers, and its surface is open in"):
+        with pytest.warns(isoshell.RunWarning, match="are not known, and its surface is open in"):
             return isoshell.remesh(isoshell.Volume(some, spacing, origin), boundary="keep", **SMALL)
 
     result = made(np.ma.array(values, mask=hidden))

@@ -4,7 +4,7 @@ import isoshell
 import numpy as np
 import pytest
 from conftest import make_ball
-from test_sources import ball_values, radii
+from test_sources import TURNED, ball_values, check_ball, radii, turned_ball
 
 SMALL = {"vertices": 100, "resolution": 32}
 
@@ -122,6 +122,10 @@ def test_an_image_of_pyvista_is_a_volume():
     image = pyvista.ImageData(dimensions=values.shape, spacing=spacing, origin=origin)
     image.point_data["distance"] = values.ravel(order="F")
     assert digest(image) == digest(isoshell.Volume(values, spacing, origin))
+    image.direction_matrix = [[0, -1, 0], [0.8, 0, -0.6], [0.6, 0, 0.8]]
+    affine = np.eye(4)
+    affine[:3, :3], affine[:3, 3] = image.direction_matrix * np.array(spacing), origin
+    assert digest(image) == digest(isoshell.Volume(values, affine=affine))
     cells = pyvista.ImageData(dimensions=np.array(values.shape) + 1, spacing=spacing,
                               origin=np.array(origin) - np.array(spacing) / 2)
     cells.cell_data["distance"] = values.ravel(order="F")
@@ -246,9 +250,8 @@ def test_an_image_of_values_is_a_volume_turned_as_its_affine_says():
     assert np.allclose(radii(isoshell.remesh(image, **SMALL)), 1, atol=0.05)
     whole = image_of(nibabel, np.rint(1000 - 500 * values.transpose(1, 0, 2)).astype(np.int16), affine)
     assert np.allclose(radii(isoshell.remesh(whole, iso=900, **SMALL)), 1.2, atol=0.05)
-    affine[0, 0] = 0.05
-    with pytest.raises(isoshell.Error, match="axes are not those of the world"):
-        isoshell.remesh(image_of(nibabel, values, affine), **SMALL)
+    turned, middle = turned_ball()
+    check_ball(isoshell.remesh(image_of(nibabel, turned, TURNED), vertices=1500), middle)
     with pytest.raises(isoshell.Error, match="one volume"):
         isoshell.remesh(image_of(nibabel, np.zeros((3, 3, 3, 2), np.int16), affine))
 

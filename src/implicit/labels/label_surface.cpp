@@ -76,30 +76,16 @@ WorldPoint to_world(const LabelVolume& volume, const PointQ8& p) {
 
 /// See FaceRegions::voxel_size_world.
 double voxel_size_world(const LabelVolume& volume) {
-  std::array<double, 3> size{};
-  for (size_t i = 0; i < 3; ++i) {
-    const WorldPoint& step = volume.step_world[i];
-    const double along[3] = {std::abs(step.x), std::abs(step.y), std::abs(step.z)};
-    size[i] = *std::max_element(along, along + 3);
-    if ((along[0] + along[1] + along[2] - size[i]) * volume.size_vox[i] > kMostOffStepVox * size[i]) return 0;
-  }
-  return common_step_world(size, {volume.size_vox[0], volume.size_vox[1], volume.size_vox[2]});
-}
-
-/// The axis of the world that is nearest to one of the array.
-size_t world_axis(const LabelVolume& volume, size_t axis) {
-  const WorldPoint& step = volume.step_world[axis];
-  const double along[3] = {std::abs(step.x), std::abs(step.y), std::abs(step.z)};
-  return size_t(std::max_element(along, along + 3) - along);
+  return common_step_world(volume.step_world, {volume.size_vox[0], volume.size_vox[1], volume.size_vox[2]});
 }
 
 /// Of a periodic volume, whose axes are those of the world, its sides by these.
 std::array<uint8_t, 7> sides_of_world(const LabelVolume& volume) {
   std::array<uint8_t, 7> sides{0};
   for (size_t axis = 0; axis < 3; ++axis) {
-    const size_t world = is_periodic(volume) ? world_axis(volume, axis) : axis;
     const WorldPoint& step = volume.step_world[axis];
-    const bool is_reversed = is_periodic(volume) && std::array{step.x, step.y, step.z}[world] < 0;
+    const size_t world = is_periodic(volume) ? world_axis(step) : axis;
+    const bool is_reversed = is_periodic(volume) && coordinate(step, world) < 0;
     for (size_t end = 1; end < 3; ++end) sides[2 * axis + end] = uint8_t(2 * world + (is_reversed ? 3 - end : end));
   }
   return sides;
@@ -108,7 +94,7 @@ WorldPoint period_world(const LabelVolume& volume) {
   double period[3] = {0, 0, 0};
   for (size_t axis = 0; axis < 3; ++axis)
     if (volume.is_periodic[axis])  // the last layer is the first one again
-      period[world_axis(volume, axis)] = (volume.size_vox[axis] - 1) * length(volume.step_world[axis]);
+      period[world_axis(volume.step_world[axis])] = (volume.size_vox[axis] - 1) * length(volume.step_world[axis]);
   return {period[0], period[1], period[2]};
 }
 

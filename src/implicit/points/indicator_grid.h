@@ -14,7 +14,9 @@ struct GridShape {
   double voxel_size = 1;
   int32_t size[3] = {};
 
-  AffineMap to_world() const { return lattice_map({voxel_size, voxel_size, voxel_size}, origin); }
+  AffineMap to_world() const {
+    return lattice_map({WorldPoint{voxel_size, 0, 0}, {0, voxel_size, 0}, {0, 0, voxel_size}}, origin);
+  }
   int64_t count() const { return int64_t(size[0]) * size[1] * size[2]; }
   int64_t index(int32_t x, int32_t y, int32_t z) const { return (int64_t(x) * size[1] + y) * size[2] + z; }
 };

@@ -23,9 +23,10 @@ struct Inside {
   bool operator()(double value) const { return below ? value < limit() : value > limit(); }
 };
 
-/// The side of a value that the background does not lie on.
+/// The side of a value that the background does not lie on; below it where only the band of a level set is known.
 inline Inside inside_of(const ScalarField& field, double iso) {
-  return {iso, field.background == iso ? field.grid_class == "level set" : field.background > iso};
+  const bool is_at_background = field.background == iso && field.grid_class == "level set";
+  return {iso, field.is_band_alone() || is_at_background || field.background > iso};
 }
 
 inline Voxel plus(Voxel a, int32_t x, int32_t y, int32_t z) { return {a.x + x, a.y + y, a.z + z}; }

@@ -36,9 +36,9 @@ DenseField::DenseField(const DenseVolume& volume, const std::string& volume_name
   name = "values";
   grid_class = "unknown";
   for (int a = 0; a < 3; ++a) size_[a] = volume.size[a] + (is_periodic_[size_t(a)] ? 1 : 2 * padding_);
+  const auto& [x, y, z] = volume.step_world;
+  to_world = lattice_map(volume.step_world, volume.origin_world - double(padding_) * (x + y + z));
   check(volume_name);
-  const WorldPoint &spacing = volume.spacing_world, &origin = volume.origin_world;
-  to_world = lattice_map(spacing, origin - double(padding_) * spacing);
   const bool is_periodic = is_periodic_[0] || is_periodic_[1] || is_periodic_[2];
   sides = FieldSides{{0, 0, 0},
                      {int32_t(size_[0]) - 1, int32_t(size_[1]) - 1, int32_t(size_[2]) - 1},
@@ -61,11 +61,11 @@ void DenseField::check(const std::string& volume_name) const {
     if (size < 1 || size > kFieldReach)
       refuse(" has " + std::to_string(size) + " values along an axis; it must have 1 to " +
              std::to_string(kFieldReach));
-  const WorldPoint &s = volume_.spacing_world, &o = volume_.origin_world;
-  for (const double spacing : {s.x, s.y, s.z})
-    if (!(spacing > 0) || !std::isfinite(spacing)) refuse(": its spacing must be above 0 along every axis");
+  const WorldPoint& o = volume_.origin_world;
   for (const double place : {o.x, o.y, o.z})
     if (!std::isfinite(place)) refuse(": its origin must be finite");
+  if (!is_invertible(to_world))
+    refuse(": its steps from value to value span no volume; give three finite ones that do");
 }
 
 void DenseField::split_into_blocks(double& low, double& high) {

@@ -105,8 +105,8 @@ class IsoSurface {
   /// Blocks whose cells touch a voxel with a value of its own, or lie where tiles of the two sides meet.
   void list_cell_blocks() {
     std::vector<Voxel> held = field_.blocks();
-    for (const Voxel& block : held) check_reach(block);
-    for (const FieldTile& tile : field_.tiles()) check_reach(tile.origin);
+    for (const Voxel& block : held) check_reach(field_, block);
+    for (const FieldTile& tile : field_.tiles()) check_reach(field_, tile.origin);
     sort_unique(held);
     const int64_t most = memory_limit_bytes_ / int64_t(8 * sizeof(Voxel));
     const std::vector<Voxel> beside = blocks_beside_tiles(field_, inside_, held, most);
@@ -118,13 +118,6 @@ class IsoSurface {
     });
     sort_unique(origin_);
     check_memory(int64_t(origin_.size() * (sizeof(Voxel) + sizeof(CellBlock))));
-  }
-
-  void check_reach(Voxel v) const {
-    if (std::max({std::abs(int64_t(v.x)), std::abs(int64_t(v.y)), std::abs(int64_t(v.z))}) > kFieldReach)
-      throw Error(ErrorCode::unreadable_input, "read",
-                  field_.title() + " has values at (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
-                      std::to_string(v.z) + "), farther out than " + std::to_string(kFieldReach) + " voxels");
   }
 
   void check_memory(int64_t bytes) const {
@@ -367,6 +360,13 @@ class IsoSurface {
 };
 
 }  // namespace
+
+void check_reach(const ScalarField& field, Voxel v) {
+  if (std::max({std::abs(int64_t(v.x)), std::abs(int64_t(v.y)), std::abs(int64_t(v.z))}) > kFieldReach)
+    throw Error(ErrorCode::unreadable_input, "read",
+                field.title() + " has values at (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
+                    std::to_string(v.z) + "), farther out than " + std::to_string(kFieldReach) + " voxels");
+}
 
 ValueRange value_range(const ScalarField& field) {
   ValueRange range{float(field.background), float(field.background), {}};

@@ -1,6 +1,7 @@
 // The surface on which a scalar field has one value.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "implicit/volumes/scalar_field.h"
@@ -15,6 +16,9 @@ struct ValueRange {
 };
 /// Over blocks, tiles and background.
 ValueRange value_range(const ScalarField& field);
+
+/// Throws: unreadable_input for a block or tile farther out than kFieldReach.
+void check_reach(const ScalarField& field, Voxel origin);
 
 /// Values that are not numbers, or jump.
 struct UnknownValues {
@@ -33,5 +37,12 @@ struct UnknownValues {
 /// are not sharp, asking for theirs costs a look at the cut cells, and changes nothing.
 TriangleSoup extract_iso_surface(const ScalarField& field, double iso, int64_t memory_limit_bytes = 0,
                                  VolumeCreases creases = VolumeCreases::none, UnknownValues* unknown = nullptr);
+
+/// The field with values also at the points beside those that have one: the mean of the nearest of these among the 26
+/// around. That tells their side, which cells of a band thinner than their diagonals need; farther out nothing is known
+/// still, so that no surface ends the band. For ScalarField::is_band_alone(). Cost: a pass over the blocks and those
+/// around them, and 2 KiB for each of these in which something is known. Throws: out_of_memory where that may be over
+/// the limit, if one is given.
+std::unique_ptr<ScalarField> with_points_beside_band(std::unique_ptr<ScalarField> band, int64_t memory_limit_bytes);
 
 }  // namespace isoshell

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -29,8 +30,10 @@ struct AffineMap {
   double at[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 };
 
-inline AffineMap lattice_map(const WorldPoint& spacing, const WorldPoint& origin) {
-  return {{{spacing.x, 0, 0, origin.x}, {0, spacing.y, 0, origin.y}, {0, 0, spacing.z, origin.z}}};
+/// Of a lattice by its steps along its axes.
+inline AffineMap lattice_map(const std::array<WorldPoint, 3>& step, const WorldPoint& origin) {
+  const auto& [x, y, z] = step;
+  return {{{x.x, y.x, z.x, origin.x}, {x.y, y.y, z.y, origin.y}, {x.z, y.z, z.z, origin.z}}};
 }
 
 /// Whether all of it is finite and it has an inverse.
@@ -108,6 +111,10 @@ class ScalarField {
   /// The same field, but going on beyond its sides as it came to them, for what looks at its slopes; null without
   /// sides.
   virtual std::unique_ptr<ScalarField> continued() const { return nullptr; }
+
+  /// A level set whose background is 0: it says nothing of what lies beyond the band, where a value that nobody set is
+  /// not known.
+  bool is_band_alone() const { return background == 0 && grid_class == "level set"; }
 
   std::string title() const { return file + ": grid \"" + name + "\""; }
 

@@ -3,9 +3,9 @@
 
 #include <openvdb/openvdb.h>
 
-#include <cmath>
 #include <string>
 
+#include "io/openvdb/grid_map.h"
 #include "io/openvdb/vdb_grids.h"
 #include "io/openvdb/vdb_stream.h"
 #include "isoshell/error.h"
@@ -13,16 +13,17 @@
 
 namespace isoshell {
 
-/// Throws: usage for a spacing that is not above 0; `name` is what the message calls the volume.
+/// Throws: usage for steps that span no volume; `name` is what the message calls the volume.
 inline openvdb::math::Transform::Ptr transform_of(const DenseVolume& volume, const std::string& name) {
-  const WorldPoint &spacing = volume.spacing_world, &origin = volume.origin_world;
-  for (const double s : {spacing.x, spacing.y, spacing.z})
-    if (!(s > 0) || !std::isfinite(s))
-      throw Error(ErrorCode::usage, "arguments", name + ": its spacing must be above 0 along every axis");
-  auto transform = openvdb::math::Transform::createLinearTransform(1);
-  transform->postScale({spacing.x, spacing.y, spacing.z});
-  transform->postTranslate({origin.x, origin.y, origin.z});
-  return transform;
+  try {
+    if (is_invertible(lattice_map(volume.step_world, volume.origin_world)))
+      return transform_of(volume.step_world, volume.origin_world);
+  } catch (const openvdb::Exception&) {
+  }
+  throw Error(ErrorCode::usage, "arguments",
+              name +
+                  ": its steps from value to value span no volume, or so little that they have no inverse; give "
+                  "three finite ones that do");
 }
 
 inline float value_of(const DenseVolume& volume, int64_t i, int64_t j, int64_t k) {

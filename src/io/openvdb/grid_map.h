@@ -3,6 +3,9 @@
 
 #include <openvdb/openvdb.h>
 
+#include <array>
+#include <memory>
+
 #include "io/vdb/volume_readers.h"
 
 namespace isoshell {
@@ -18,6 +21,23 @@ inline AffineMap affine_map_of(const openvdb::GridBase& grid) {
     for (int i = 0; i < 3; ++i) result.at[i][j] = column[i];
   }
   return result;
+}
+
+/// Of voxels by the steps from one to the next. As scales and a translation where these are along the axes: files hold
+/// these of voxels of any size. Throws: openvdb::Exception for other steps that span so little that they have no
+/// inverse.
+inline openvdb::math::Transform::Ptr transform_of(const std::array<WorldPoint, 3>& step, const WorldPoint& origin) {
+  using openvdb::math::Transform;
+  const auto& [x, y, z] = step;
+  if (x.y == 0 && x.z == 0 && y.x == 0 && y.z == 0 && z.x == 0 && z.y == 0)
+    return std::make_shared<Transform>(std::make_shared<openvdb::math::ScaleTranslateMap>(
+        openvdb::Vec3d(x.x, y.y, z.z), openvdb::Vec3d(origin.x, origin.y, origin.z)));
+  openvdb::math::Mat4d rows = openvdb::math::Mat4d::identity();  // of where the axes go, then the origin
+  rows.setRow(0, {x.x, x.y, x.z, 0});
+  rows.setRow(1, {y.x, y.y, y.z, 0});
+  rows.setRow(2, {z.x, z.y, z.z, 0});
+  rows.setRow(3, {origin.x, origin.y, origin.z, 1});
+  return std::make_shared<Transform>(std::make_shared<openvdb::math::AffineMap>(rows));
 }
 
 }  // namespace isoshell

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "io/openvdb/grid_map.h"
 #include "io/openvdb/label_names.h"
 #include "io/openvdb/vdb_grids.h"
 #include "io/openvdb/vdb_stream.h"
@@ -27,24 +28,9 @@ void check_size(const std::string& path, const LabelVolume& volume) {
                          " voxels; give one a voxel");
 }
 
-/// As scales and a translation where the steps are along the axes: files hold these of voxels of any size.
-openvdb::math::MapBase::Ptr map_of(const LabelVolume& volume) {
-  using openvdb::math::MapBase;
-  const auto& [x, y, z] = volume.step_world;
-  const openvdb::Vec3d origin(volume.origin_world.x, volume.origin_world.y, volume.origin_world.z);
-  if (x.y == 0 && x.z == 0 && y.x == 0 && y.z == 0 && z.x == 0 && z.y == 0)
-    return std::make_shared<openvdb::math::ScaleTranslateMap>(openvdb::Vec3d(x.x, y.y, z.z), origin);
-  openvdb::math::Mat4d rows = openvdb::math::Mat4d::identity();  // of where the axes go, then the origin
-  rows.setRow(0, {x.x, x.y, x.z, 0});
-  rows.setRow(1, {y.x, y.y, y.z, 0});
-  rows.setRow(2, {z.x, z.y, z.z, 0});
-  rows.setRow(3, {origin.x(), origin.y(), origin.z(), 1});
-  return std::make_shared<openvdb::math::AffineMap>(rows);
-}
-
 openvdb::math::Transform::Ptr transform_of(const std::string& path, const LabelVolume& volume) {
   try {
-    return std::make_shared<openvdb::math::Transform>(map_of(volume));
+    return transform_of(volume.step_world, volume.origin_world);
   } catch (const openvdb::Exception&) {
     refuse_use(path, "a .vdb file cannot hold steps that span so little or no volume; scale them up");
   }

@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <istream>
 
@@ -50,10 +51,15 @@ class VdbField : public ScalarField {
     const openvdb::Coord at(origin.x, origin.y, origin.z);
     if (const Leaf* leaf = grid_->tree().probeConstLeaf(at)) {
       const auto* values = leaf->buffer().data();
-      copy_block(size, to, [&](int i) { return values[i]; });
+      if (is_band_alone())
+        copy_block(size, to, [&](int i) {
+          return values[i] == 0 && !leaf->isValueOn(openvdb::Index(i)) ? NAN : float(values[i]);
+        });
+      else
+        copy_block(size, to, [&](int i) { return values[i]; });
     } else {
       const auto value = grid_->tree().getValue(at);
-      copy_block(size, to, [&](int) { return value; });
+      copy_block(size, to, [&](int) { return is_band_alone() && value == 0 ? NAN : float(value); });
     }
   }
 
