@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "isoshell/advanced/level_set.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/remesh_options.h"
 #include "isoshell/remesh_report.h"
@@ -49,6 +50,11 @@ Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, Context
 Prepared prepare(const TriangleMesh& mesh, const RemeshOptions& options, Context& context);
 /// The same from a surface that is on its lattice already, with the closing that was chosen for it: a resumed run.
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, Context& context);
+
+/// Signed distances around the solid that a prepared surface's sheet bounds, less than so many voxels from it (see
+/// LevelSet). Exact to the input's own vertices where want_level_set has kept them, else to the nearest 1/256 voxel.
+/// Throws: usage where the surface parts regions, and for a band outside of 1 to kMaxLevelSetBandVox.
+LevelSet level_set(const Prepared& prepared, double band_vox, Context& context);
 
 /// Seeds of a prepared surface, and what was measured up to there.
 struct Relaxed {

@@ -68,6 +68,8 @@ class Options(TypedDict, total=False):
         output_format: format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb [by its name].
         save_shell: also write the shell, to resume from.
         save_voronoi: also write the Voronoi volume, to resume from.
+        save_level_set: also write signed distances around the closed surface, on the grid of resolution or voxel_size.
+        level_set_band: how far, in voxels, a level set reaches on both sides [3].
         split_regions: also write each region of the result as a closed mesh of its own, DIR/NAME or DIR/LABEL, in the
             format of OUTPUT.
         recenter: write meshes with this place at the origin, auto: round numbers near the middle of the result; for
@@ -132,9 +134,11 @@ class Options(TypedDict, total=False):
     output_format: Optional[str]
     save_shell: Optional[Path]
     save_voronoi: Optional[Path]
+    save_level_set: Optional[Path]
+    level_set_band: Optional[float]
     split_regions: Optional[Path]
     recenter: Optional[Union[str, Sequence[float]]]
-    stop_after: Optional[Literal["shell", "voronoi"]]
+    stop_after: Optional[Literal["shell", "voronoi", "level-set"]]
     stats: Optional[Union[bool, Path]]
     report: Optional[Path]
     force: bool

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from ._options import Options
 
-STAGE_FILES = ("save_shell", "save_voronoi")
+STAGE_FILES = ("save_shell", "save_voronoi", "save_level_set")
 OF_OTHER_OUTPUTS = ("output_format", "stop_after", "color_features")
 
 
@@ -41,7 +41,7 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
             once, those of a device to the host first.
         faces: remesh(V, F) is remesh((V, F)).
         output: also write the result there, as the command does, or as a stage of USD, which names the files of
-            save_shell and save_voronoi as volumes.
+            save_shell, save_voronoi and save_level_set as volumes.
         context: where to run; otherwise device, threads and max_memory say it.
         **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond
             what these say, progress may be a function, called as progress(stage, fraction) with a Progress of the whole

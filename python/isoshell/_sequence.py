@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Number = Union[int, float]
 Frame = Tuple[Number, Callable[[], Any]]  # its number, and what makes its source
 
-PATTERNS = ("stats", "save_shell", "save_voronoi")  # beside the output
+PATTERNS = ("stats", "save_shell", "save_voronoi", "save_level_set")  # beside the output
 
 
 def remesh_sequence(source: Union[Path, Iterable[SourceLike]], *, frames: Optional[Union[str, int, range]] = None,
@@ -58,8 +58,8 @@ def remesh_sequence(source: Union[Path, Iterable[SourceLike]], *, frames: Option
         keep_going: go on after a frame that cannot be read or meshed, or misses a requirement: see Frames.errors.
         resume: leave out the frames whose output is there, whole and as this call would make it, and go on after them,
             to the same bytes; others replace what is there, with a warning. In PLY.
-        context, options: as remesh() takes them, but for report and split_regions; stats, save_shell and save_voronoi
-            are names with #### or %04d.
+        context, options: as remesh() takes them, but for report and split_regions; stats, save_shell, save_voronoi
+            and save_level_set are names with #### or %04d.
 
     Returns:
         An iterator of the results.

@@ -29,6 +29,9 @@ void save_preview(const std::string& path, const LatticeFrame&, const Shell&, co
                   const StageWriteOptions&) {
   throw_without_openvdb(ErrorCode::unwritable_output, path);
 }
+void save_level_set(const std::string& path, const LevelSet&, const LevelSetWriteOptions&) {
+  throw_without_openvdb(ErrorCode::unwritable_output, path);
+}
 std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions&) {
   throw_without_openvdb(ErrorCode::unreadable_input, source.name());
 }

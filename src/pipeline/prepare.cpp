@@ -95,6 +95,13 @@ void finish(PreparedSurface& p, const PatchSource& source, Run& run) {
   note_digests(p, run);
 }
 
+std::shared_ptr<const TriangleSoup> positions_and_triangles(const TriangleSoup& soup) {
+  TriangleSoup copy;
+  copy.vertices = soup.vertices;
+  copy.triangles = soup.triangles;
+  return std::make_shared<const TriangleSoup>(std::move(copy));
+}
+
 Prepared held(PreparedSurface p, Run& run) {
   run.exchange_log(p.report);
   return PreparedParts::hold(std::move(p));
@@ -269,6 +276,7 @@ Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested,
   const TriangleSoup& meshed = input.soup(soup);
   const Plan plan = plan_of(options, input.topology, input.is_changed() ? bounding_box(meshed) : given.box);
   PreparedSurface p = GridSearch(meshed, plan, {&soup, input.interfaces}, run).best_grid();
+  if (options.want_level_set) p.exact = positions_and_triangles(meshed);
   p.report.input = {measured.topology, measured.dirt, soup.far, input.repair, input.united};
   return held(std::move(p), run);
 }

@@ -149,11 +149,9 @@ Recenter parse_recenter(const std::string& text) {
 
 std::vector<NamedFile> outputs_of(const RunRequest& r) {
   const char* const replaced = r.report.empty() ? kInput : "";  // a report reads it again
-  std::vector<NamedFile> files = {{"OUTPUT", r.output.path, replaced},
-                                  {"--stats", r.statistics},
-                                  {"--report", r.report},
-                                  {"--save-shell", r.save_shell},
-                                  {"--save-voronoi", r.save_voronoi}};
+  std::vector<NamedFile> files = {
+      {"OUTPUT", r.output.path, replaced}, {"--stats", r.statistics},          {"--report", r.report},
+      {"--save-shell", r.save_shell},      {"--save-voronoi", r.save_voronoi}, {"--save-level-set", r.save_level_set}};
   files.push_back({"the preview", preview_path(r.save_voronoi)});
   if (r.stop_after == StopAfter::voronoi) files.push_back({"the preview", preview_path(r.output.path)});
   return files;
@@ -193,10 +191,12 @@ void check_request(const RunRequest& r) {
 }
 
 void check_outputs(const RunRequest& r) {
-  if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty()))
+  if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty() ||
+                           !r.save_level_set.empty()))
     refuse(
-        "this build writes no .vdb files: leave out --stop-after, --save-shell and --save-voronoi, or build with "
-        "-DISOSHELL_VDB=ON");
+        "this build writes no .vdb files: leave out --stop-after, --save-shell, --save-voronoi and --save-level-set, "
+        "or "
+        "build with -DISOSHELL_VDB=ON");
   const bool is_later_frame = !r.written_before.empty();  // then the first one has removed what was left
   check_output_files(outputs_of(r), inputs_of(r), r.overwrite, is_later_frame);
   if (!r.split_regions.empty()) check_folder_of_regions(r.split_regions);

@@ -45,7 +45,9 @@ class RunSteps::Run {
     record_.options = options_.values;
     record_.output = request_.output;
     record_.output.format = named_output(request_.output.path, request_.output.format, request_.stop_after).format;
-    options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() || stops_early();
+    options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() ||
+                                  request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::voronoi;
+    options_.values.want_level_set |= !level_set_files(request_).empty();
     options_.values.want_digests |= measures_all(request_);
   }
 
@@ -148,9 +150,15 @@ class RunSteps::Run {
 
   RunResult finish(bool keeps_seeds) {
     if (is_over_) refuse_use("the run is over; begin another");
-    save_shell_if_requested();
-    if (request_.stop_after == StopAfter::shell) return result({});
-    save_voronoi_if_requested();
+    const Prepared& prepared = prepare();
+    for (const std::string& path : stage_files(request_, request_.save_shell, StopAfter::shell))
+      save_shell(path, request_.overwrite);
+    for (const std::string& path : level_set_files(request_))
+      write_step("save-level-set", path, [&] { write_level_set(path, prepared, request_, *context_); });
+    if (request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::level_set) return result({});
+    relax();
+    const std::vector<std::string> voronoi = stage_files(request_, request_.save_voronoi, StopAfter::voronoi);
+    if (!voronoi.empty()) save_voronoi(voronoi, request_.overwrite);
     if (request_.stop_after == StopAfter::voronoi) return result({});
     TriangleMesh mesh = timed("triangulate", [&] { return triangulated(keeps_seeds); });
     std::vector<WorldPoint> positions = put_as_in_file(mesh, record_);
@@ -279,18 +287,6 @@ class RunSteps::Run {
 
   StageWriteOptions stage_options(bool overwrite) const {
     return stage_write_options(*prepared_, options_json(options_.values), left_out_, overwrite);
-  }
-
-  void save_shell_if_requested() {
-    prepare();
-    for (const std::string& path : stage_files(request_, request_.save_shell, StopAfter::shell))
-      save_shell(path, request_.overwrite);
-  }
-
-  void save_voronoi_if_requested() {
-    relax();
-    const std::vector<std::string> files = stage_files(request_, request_.save_voronoi, StopAfter::voronoi);
-    if (!files.empty()) save_voronoi(files, request_.overwrite);
   }
 
   void measure(TriangleMesh& mesh, std::vector<WorldPoint>& exact) {

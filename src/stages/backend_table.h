@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/distance_sums.h"
+#include "isoshell/advanced/level_set.h"
 #include "isoshell/advanced/stages.h"
 
 namespace isoshell {
@@ -17,6 +18,8 @@ class BackendTable {
   virtual SiteSet voxelize(const LatticeSurface&, Context&) const = 0;
   virtual SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const = 0;
   virtual Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const = 0;
+  virtual LevelSet build_level_set(const LevelSetSurface&, const SiteSet&, const Sheet&, const LevelSetOptions&,
+                                   Context&) const = 0;
   virtual Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const = 0;
   /// From the sheet of all `solid_voxels`, which are the sites or what cut_false_handles makes of them. One that is a
   /// single component and has more handles than a genus that is given, so will not be used, has its topology only.

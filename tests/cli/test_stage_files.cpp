@@ -49,6 +49,21 @@ TEST_CASE("run: stage files go through pipes, and are those that files hold", "[
   CHECK(folder.run("saved.vdb resumed.ply").status == 0);
 }
 
+TEST_CASE("run: a level set is written on the way, or instead of a mesh, and meshed again through a pipe",
+          "[cli][vdb]") {
+  Folder folder;
+  write_ball(folder);
+  REQUIRE(folder.run("ball.off out.ply --save-level-set a.vdb --level-set-band 4" + kQuick).status == 0);
+  REQUIRE(folder.run("ball.off b.vdb --stop-after level-set --level-set-band 4" + kQuick).status == 0);
+  CHECK(folder.content("a.vdb") == folder.content("b.vdb"));
+  const std::string again = "'" + command_path() + "' - again.ply --input-format vdb" + kQuick;
+  REQUIRE(folder.run("ball.off - --stop-after level-set" + kQuick + "| " + again).status == 0);
+  CHECK(folder.has("again.ply"));
+  CHECK(folder.run("ball.off c.vdb --stop-after level-set --level-set-band 0.5" + kQuick).status == 2);
+  CHECK_FALSE(folder.has("c.vdb"));
+  CHECK(folder.run("ball.off c.vdb --stop-after level-set --regions components" + kQuick).status == 2);
+}
+
 TEST_CASE("run: a run that resumes says which attributes it is without, and where they are", "[cli][vdb]") {
   Folder folder;
   folder.write("quad.ply",

@@ -60,4 +60,7 @@ cmp "$folder/file.ply" "$folder/pipe.ply"
 make_ball -write stdout.vdb > "$folder/stream.vdb"
 remesh "$folder/stream.vdb:ball" "$folder/stream.ply"
 cmp "$folder/file.ply" "$folder/stream.ply"
+"$command" "$folder/file.ply" - --stop-after level-set --resolution 48 --vertices 300 --quiet |
+  vdb_tool -quiet -read stdin.vdb -ls2mesh -write "$folder/back.ply"
+test -s "$folder/back.ply"
 echo "opened by vdb_print and pyopenvdb, and joined to vdb_tool by a pipe"

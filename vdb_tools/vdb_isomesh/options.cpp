@@ -23,7 +23,7 @@ void set_iso(const std::string& text, Arguments& a) {
 }
 
 constexpr OptionRange kLabels{double(std::numeric_limits<int32_t>::min()), double(std::numeric_limits<int32_t>::max())};
-constexpr OptionRange kIslands{0, kLabels.high}, kSmoothing{0, 1};
+constexpr OptionRange kIslands{0, kLabels.high}, kSmoothing{0, 1}, kLevelSetBand{1, kMaxLevelSetBandVox};
 
 void set_background(const std::string& text, Arguments& a) {
   const int64_t label = parse_whole("--background", text);
@@ -75,8 +75,14 @@ void set_device(const std::string& text, Arguments& a) {
 }
 
 void set_stop_after(const std::string& text, Arguments& a) {
-  a.run.stop_after =
-      parse_choice<StopAfter>("--stop-after", text, {{"shell", StopAfter::shell}, {"voronoi", StopAfter::voronoi}});
+  a.run.stop_after = parse_choice<StopAfter>(
+      "--stop-after", text,
+      {{"shell", StopAfter::shell}, {"voronoi", StopAfter::voronoi}, {"level-set", StopAfter::level_set}});
+}
+
+void set_level_set_band(const std::string& text, Arguments& a) {
+  a.run.level_set_band_vox = parse_number("--level-set-band", text);
+  check_range("--level-set-band", a.run.level_set_band_vox, kLevelSetBand);
 }
 
 void set_progress(const std::string& text, Arguments& a) {
@@ -149,6 +155,12 @@ std::vector<CommandOption> file_options() {
       {{group, "save-shell", "F.vdb", "also write the shell, to resume from"}, text_of(&RunRequest::save_shell)},
       {{group, "save-voronoi", "F.vdb", "also write the Voronoi volume, to resume from"},
        text_of(&RunRequest::save_voronoi)},
+      {{group, "save-level-set", "F.vdb",
+        "also write signed distances around the closed surface, on the grid of --resolution or --voxel-size"},
+       text_of(&RunRequest::save_level_set)},
+      {{group, "level-set-band", "VOX", "how far, in voxels, a level set reaches on both sides", "3", true, false,
+        kLevelSetBand},
+       set_level_set_band},
       {{group, "split-regions", "DIR",
         "also write each region of the result as a closed mesh of its own, DIR/NAME or DIR/LABEL, in the format of "
         "OUTPUT"},
@@ -157,7 +169,8 @@ std::vector<CommandOption> file_options() {
         "write meshes with this place at the origin, auto: round numbers near the middle of the result; for formats "
         "whose numbers are too coarse far from the origin, as STL"},
        [](const std::string& text, Arguments& a) { a.run.output.recenter = parse_recenter(text); }},
-      {{group, "stop-after", "shell|voronoi", "stop after this stage; OUTPUT is its .vdb file"}, set_stop_after},
+      {{group, "stop-after", "shell|voronoi|level-set", "stop after this stage; OUTPUT is its .vdb file"},
+       set_stop_after},
       {{group, "stats", "F.json", "write all statistics as JSON; - writes to standard output"},
        text_of(&RunRequest::statistics)},
       {{group, "report", "F.html",

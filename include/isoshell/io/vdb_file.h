@@ -7,6 +7,7 @@
 #include <string>
 
 #include "isoshell/advanced/lattice_surface.h"
+#include "isoshell/advanced/level_set.h"
 #include "isoshell/advanced/seed_set.h"
 #include "isoshell/advanced/shell.h"
 #include "isoshell/advanced/site_set.h"
@@ -65,6 +66,16 @@ void save_voronoi(const std::string& path, const LatticeSurface& surface, const 
 /// `color` by a hash of the seed id. Not a stage file. Throws as save_shell.
 void save_preview(const std::string& path, const LatticeFrame& frame, const Shell& shell, const VoronoiLabels& labels,
                   const StageWriteOptions& options = {});
+
+struct LevelSetWriteOptions {
+  std::string name = "surface";  ///< of the grid
+  bool as_half = false;          ///< values in 16 bits
+  bool overwrite = false;        ///< replace an existing file
+};
+
+/// Writes a level set that every program opens: a float grid of that class, in world units, from voxel centres;
+/// inactive voxels inside have the background's negative. Throws as save_shell.
+void save_level_set(const std::string& path, const LevelSet& level_set, const LevelSetWriteOptions& options = {});
 
 /// Whether this is a file that save_shell or save_voronoi wrote. Cost: the first bytes of the file. Never throws; a
 /// file that cannot be read is none.

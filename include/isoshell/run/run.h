@@ -14,7 +14,7 @@
 
 namespace isoshell {
 
-enum class StopAfter { mesh, shell, voronoi };
+enum class StopAfter { mesh, shell, voronoi, level_set };
 
 /// What is measured of the result. Gates have measured what they ask for, statistics that are written everything.
 enum class Measures {
@@ -32,6 +32,8 @@ struct RunRequest {
   OutputRequest output;      ///< the mesh, or the stage file when the run stops before it
   StopAfter stop_after = StopAfter::mesh;
   std::string save_shell, save_voronoi;  ///< stage files to write on the way, a preview beside the second; empty: none
+  std::string save_level_set;            ///< level set to write on the way; empty: none
+  double level_set_band_vox = 3;         ///< how far it reaches on both sides
   std::string split_regions;             ///< folder for a file of each region; empty: none
   std::string statistics;                ///< file, or "-"; empty: none
   std::string report;  ///< page that the front writes of the result afterwards, from all that is measured; empty: none

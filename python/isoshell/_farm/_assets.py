@@ -21,7 +21,7 @@ MESHES = tuple(f".{ending}" for ending in (*input_formats(), *READ_BY_PYTHON))
 TABLES = (".csv", ".jsonl", ".parquet")
 OF_SEQUENCES = ("frames", "velocity", "no_coherence", "keep_going")
 OF_THE_FARM = ("stats", "report", "force", "progress", "resume", "dry_run", "output_format", "save_shell",
-               "save_voronoi", "split_regions", "stop_after", "output", "verbose", "quiet", "help", "version", "device",
+               "save_voronoi", "save_level_set", "split_regions", "stop_after", "output", "verbose", "quiet", "help", "version", "device",
                "threads", "max_memory")
 
 Options = Dict[str, Any]

@@ -23,8 +23,8 @@ def calls_with(path, ball):
     result, labels = isoshell.remesh(ball, **SMALL), isoshell.Labels(np.ones((3, 3, 3), np.int32))
     stages = isoshell.Stages(ball, **SMALL)
     yield from (lambda name=name: isoshell.remesh(ball, **{name: path}, **SMALL)
-                for name in ("output", "stats", "report", "save_shell", "save_voronoi", "split_regions", "sizing",
-                             "features"))
+                for name in ("output", "stats", "report", "save_shell", "save_voronoi", "save_level_set",
+                             "split_regions", "sizing", "features"))
     yield lambda: isoshell.remesh(path, **SMALL)
     yield lambda: isoshell.estimate(path, **SMALL)
     yield lambda: isoshell.Stages(path, **SMALL)

@@ -51,6 +51,7 @@ def test_a_volume_of_nibabel_stands_where_its_affine_says(two_bones, tmp_path, m
 
 
 def test_every_region_is_filled_and_the_walls_stay_as_they_are(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("tetgen")
     monkeypatch.chdir(tmp_path)
     grains = np.zeros((20, 20, 20), np.int32)
     grains[2:10, 2:18, 2:18], grains[10:18, 2:18, 2:18] = 1, 2

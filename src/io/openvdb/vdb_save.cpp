@@ -26,8 +26,6 @@ namespace {
 using namespace vdb_format;
 using GridMaker = std::function<openvdb::GridBase::Ptr()>;
 
-constexpr char kCreator[] = "vdb_isomesh " ISOSHELL_VERSION;
-
 void check_fits(int64_t have, int64_t want, const char* what) {
   if (have != want)
     throw Error(ErrorCode::usage, "write",
@@ -58,14 +56,6 @@ std::string topology_text(const InputTopology& t) {
       .add("genus", t.genus)
       .add("area_world", t.area_world)
       .text();
-}
-
-/// Voxel (0,0,0) has its centre where index (0,0,0) is mapped to.
-openvdb::math::Transform::Ptr lattice_transform(const LatticeFrame& frame) {
-  auto transform = openvdb::math::Transform::createLinearTransform(frame.voxel_size);
-  const double half = frame.voxel_size / 2;
-  transform->postTranslate({frame.origin.x + half, frame.origin.y + half, frame.origin.z + half});
-  return transform;
 }
 
 /// The grids and the metadata of a file that is being put together.

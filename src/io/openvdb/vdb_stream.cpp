@@ -88,6 +88,13 @@ std::vector<char> join_grids(const std::vector<std::function<openvdb::GridBase::
 
 void initialize_openvdb() { openvdb::initialize(); }
 
+openvdb::math::Transform::Ptr lattice_transform(const LatticeFrame& frame) {
+  auto transform = openvdb::math::Transform::createLinearTransform(frame.voxel_size);
+  const double half = frame.voxel_size / 2;
+  transform->postTranslate({frame.origin.x + half, frame.origin.y + half, frame.origin.z + half});
+  return transform;
+}
+
 void write_vdb_file(const std::string& path, const std::vector<std::function<openvdb::GridBase::Ptr()>>& makers,
                     const openvdb::MetaMap& meta, bool overwrite) {
   OutputFile out(path, overwrite);

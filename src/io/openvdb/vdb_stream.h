@@ -8,11 +8,15 @@
 #include <vector>
 
 #include "io/vdb/vdb_layout.h"
+#include "isoshell/advanced/lattice.h"
 
 namespace isoshell {
 
 /// Registers OpenVDB's types; may be called again and from any thread.
 void initialize_openvdb();
+
+/// Voxel (0,0,0) has its centre where index (0,0,0) is mapped to.
+openvdb::math::Transform::Ptr lattice_transform(const LatticeFrame& frame);
 
 /// Calls the makers, several at a time, and writes their grids in order behind one header. The file's unique tag is a
 /// checksum of the rest, so equal grids give equal bytes. Throws: unwritable_output.

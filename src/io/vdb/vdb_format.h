@@ -1,9 +1,13 @@
 // Names that stage files are made of, shared by the writer and the reader. docs/VDB_FORMAT.md explains them.
 #pragma once
 
+#include "isoshell/version.h"
+
 namespace isoshell::vdb_format {
 
 constexpr int kVersion = 1;
+
+constexpr char kCreator[] = "vdb_isomesh " ISOSHELL_VERSION;
 
 constexpr char kKeyStage[] = "isoshell:stage";
 constexpr char kKeyVersion[] = "isoshell:version";

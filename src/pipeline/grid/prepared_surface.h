@@ -27,6 +27,7 @@ struct RelaxedMeanwhile;
 struct PreparedSurface {
   RemeshOptions options;  ///< as checked()
   LatticeSurface surface;
+  std::shared_ptr<const TriangleSoup> exact;  ///< what was snapped, positions and triangles; null unless asked for
   SiteSet sites;
   SiteSamples samples;
   Shell shell;

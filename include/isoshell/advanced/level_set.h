@@ -1,0 +1,49 @@
+// The level set: signed distances around the solid that a sheet bounds, of any surface that has a sheet.
+#pragma once
+
+#include "isoshell/advanced/lattice_surface.h"
+#include "isoshell/advanced/sheet.h"
+#include "isoshell/advanced/site_set.h"
+#include "isoshell/backend.h"
+#include "isoshell/surface_source.h"
+
+namespace isoshell {
+
+constexpr double kMaxLevelSetBandVox = 16;
+
+/// What distances are measured to, in voxels of the lattice: voxel i covers [i, i + 1].
+struct LevelSetSurface {
+  Buffer<WorldPoint> corner;  ///< three a triangle
+  int64_t first_of_sheet = 0;  ///< triangles from this one on are the sheet's, the others are the input's
+};
+
+/// Result: active are the voxels whose centres are less than `band_vox` from the surface, and each holds its distance,
+/// negative inside. Of the input's triangles only what lies near the sheet counts, within the closing and two voxels of
+/// a boundary face of its solid: inner walls have no distances. Outside is what is not in the solid, and each voxel of
+/// the solid that a path along the lattice joins with the outside sooner than with the inside, without meeting a
+/// triangle. So soups and scans with holes have a sign, and where faces are flipped or doubled it is the same.
+struct LevelSet {
+  LatticeFrame frame;
+  VoxelSet voxels;
+  Buffer<float> distance_vox;  ///< per active voxel
+  double band_vox = 0;
+};
+
+struct LevelSetOptions {
+  double band_vox = 3;      ///< 1 to kMaxLevelSetBandVox
+  int32_t closing_vox = 0;  ///< that the sheet was made with
+};
+
+/// The surface of a level set: the input's triangles, and where the sheet bridges gaps its own. `exact` are the vertices
+/// and triangles that were snapped; without it the snapped positions count. Where the sheet bounds more than the sites
+/// do, as around surfaces without thickness, it is the surface by itself (`only_sheet`). On the host.
+LevelSetSurface level_set_surface(const LatticeSurface& surface, const TriangleSoup* exact, const Sheet& sheet,
+                                  bool only_sheet, Context& context);
+
+/// Measures and signs the band. Distances are minima over all triangles that count, computed in doubles in a fixed
+/// order, so they are the same for any number of threads. Cost: O(triangles * voxels that they reach), some 50 bytes a
+/// voxel of the band. Throws: usage for a band outside of its range; interrupted.
+LevelSet build_level_set(const LevelSetSurface& surface, const SiteSet& sites, const Sheet& sheet,
+                         const LevelSetOptions& options, Context& context);
+
+}  // namespace isoshell

@@ -1,0 +1,77 @@
+// build_level_set: checks its arguments and runs on the CPU, for a device too.
+#include "isoshell/advanced/level_set.h"
+
+#include <string>
+#include <vector>
+
+#include "core/copy_product.h"
+#include "core/vector_view.h"
+#include "isoshell/error.h"
+#include "stages/backend_table.h"
+
+namespace isoshell {
+namespace {
+
+/// From a position of the lattice, and from one of the world.
+struct ToVoxels {
+  const LatticeFrame& frame;
+
+  WorldPoint operator()(PointQ8 q) const {
+    constexpr double kStep = 1.0 / kOneVoxelQ8;
+    return {q.x * kStep, q.y * kStep, q.z * kStep};
+  }
+  WorldPoint operator()(const WorldPoint& p) const {
+    return {(p.x - frame.origin.x) / frame.voxel_size, (p.y - frame.origin.y) / frame.voxel_size,
+            (p.z - frame.origin.z) / frame.voxel_size};
+  }
+};
+
+bool bridges(const Sheet& sheet, const TriangleIndices& t) {
+  const auto is_off = [&](uint32_t v) { return sheet.source_triangle[v] == kNone; };
+  return is_off(t.a) || is_off(t.b) || is_off(t.c);
+}
+
+}  // namespace
+
+LevelSetSurface level_set_surface(const LatticeSurface& surface_anywhere, const TriangleSoup* exact,
+                                  const Sheet& sheet_anywhere, bool only_sheet, Context&) {
+  const OnHost<LatticeSurface> surface_here(surface_anywhere);
+  const OnHost<Sheet> sheet_here(sheet_anywhere);
+  const LatticeSurface& surface = *surface_here;
+  const Sheet& sheet = *sheet_here;
+  const ToVoxels to_voxels{sheet.frame};
+  std::vector<WorldPoint> corner;
+  const auto add = [&](const auto& positions, uint32_t a, uint32_t b, uint32_t c) {
+    for (const uint32_t v : {a, b, c}) corner.push_back(to_voxels(positions[v]));
+  };
+  if (!only_sheet) {
+    corner.reserve(size_t(3 * surface.triangles.size()));
+    for (int64_t i = 0; i < surface.triangles.size(); ++i) {
+      const TriangleIndices t = surface.triangles[i];
+      if (!exact) {
+        add(surface.points, t.a, t.b, t.c);
+        continue;
+      }
+      const auto& source = exact->triangles[surface.source_face[i]];
+      add(exact->vertices, source[0], source[1], source[2]);
+    }
+  }
+  LevelSetSurface made;
+  made.first_of_sheet = int64_t(corner.size() / 3);
+  for (int64_t i = 0; i < sheet.triangles.size(); ++i)
+    if (const TriangleIndices t = sheet.triangles[i]; only_sheet || bridges(sheet, t))
+      add(sheet.position, t.a, t.b, t.c);
+  made.corner = buffer_of(corner);
+  return made;
+}
+
+LevelSet build_level_set(const LevelSetSurface& surface, const SiteSet& sites, const Sheet& sheet,
+                         const LevelSetOptions& options, Context& context) {
+  if (!(options.band_vox >= 1 && options.band_vox <= kMaxLevelSetBandVox))
+    throw Error(ErrorCode::usage, "level-set",
+                "band_vox is " + std::to_string(options.band_vox) + "; it must be 1 to " +
+                    std::to_string(int(kMaxLevelSetBandVox)));
+  return cpu_backend().build_level_set(surface, sites, sheet, options, context);
+}
+
+}  // namespace isoshell
