@@ -16,6 +16,7 @@
 namespace isoshell {
 
 struct CudaBuildShell;
+struct CudaDilate;
 struct FindOutsideByBlocks;
 struct JoinComponentsByLeaves;
 struct ListSiteTrianglesByMasks;
@@ -86,6 +87,8 @@ struct CudaKernels {
   using ListSiteTriangles = ListSiteTrianglesByMasks;
   /// cuda_sheet.cu: the stage itself.
   using BuildShell = CudaBuildShell;
+  /// cuda_level_set.cu: the voxels of a shell.
+  using Dilate = CudaDilate;
   /// sheet_flood.cuh: a block of threads floods a block of leaves, and the host looks every eighth round only.
   using FindOutside = FindOutsideByBlocks;
   /// project_leaves.cuh: a block of threads a leaf of corners, which lists the triangles near it once.

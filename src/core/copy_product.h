@@ -1,6 +1,7 @@
 // Copies of products from memory to memory: the one list of the arrays that each product has.
 #pragma once
 
+#include "isoshell/advanced/level_set.h"
 #include "isoshell/advanced/stages.h"
 
 namespace isoshell {
@@ -34,6 +35,10 @@ SiteSamples copy_product(const SiteSamples& s, Copy copy) {
 template <class Copy>
 Shell copy_product(const Shell& s, Copy copy) {
   return {copy_product(s.voxels, copy), s.band_vox, copy(s.closest_site), copy(s.distance_sq_vox)};
+}
+template <class Copy>
+LevelSet copy_product(const LevelSet& s, Copy copy) {
+  return {s.frame, copy_product(s.voxels, copy), copy(s.distance_vox), s.band_vox};
 }
 template <class Copy>
 SurfaceMesh copy_product(const SurfaceMesh& s, Copy copy) {
@@ -72,6 +77,7 @@ DualMesh copy_product(const DualMesh& m, Copy copy) {
 
 /// Where the arrays of a product lie.
 inline Memory& memory_of(const VoxelSet& v) { return v.leaf_key.memory(); }
+inline Memory& memory_of(const LevelSet& s) { return memory_of(s.voxels); }
 inline Memory& memory_of(const LatticeSurface& s) { return s.points.memory(); }
 inline Memory& memory_of(const SiteSet& s) { return memory_of(s.voxels); }
 inline Memory& memory_of(const SiteSamples& s) { return s.sample.memory(); }

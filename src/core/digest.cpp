@@ -62,6 +62,13 @@ uint64_t digest(const Shell& shell) {
       .array(s->distance_sq_vox)
       .get();
 }
+uint64_t digest(const LevelSet& level_set) {
+  const OnHost<LevelSet> s(level_set);
+  return Digest()
+      .value(digest(s->voxels))
+      .value(hash_bytes(s->distance_vox.data(), s->distance_vox.size_bytes()))
+      .get();
+}
 uint64_t digest(const Sheet& sheet) {
   const OnHost<Sheet> s(sheet);
   Digest all;

@@ -42,6 +42,7 @@ struct CpuKernels {
   using StepWork = CpuStepSimd;
 
   // Plain: they take little of a run's time, or leave nothing to share between elements.
+  using Dilate = PlainKernels::Dilate;
   using FindOutside = PlainKernels::FindOutside;
   using JoinComponents = PlainKernels::JoinComponents;
   using SplitCells = PlainKernels::SplitCells;

@@ -302,6 +302,11 @@ InputRequest named_input(const std::string& name, InputRequest request) {
   return request;
 }
 
+StageFile read_stage(const std::string& path) {
+  ReadingBudget no_limit;
+  return read_stage(MeshSource(path, no_limit));
+}
+
 Input read_input(const InputRequest& request, const Context& context, const Tell& tell) {
   Reader reader(request.path, context, tell);
   reader.read(request);

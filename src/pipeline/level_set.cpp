@@ -17,8 +17,7 @@ LevelSet level_set(const Prepared& prepared, double band_vox, Context& context) 
   Run run{context, false};
   SheetWhenNeeded sheet(given, run);
   const PreparedSurface& p = sheet.get();
-  const LevelSetSurface surface =
-      level_set_surface(p.surface, given.exact.get(), p.sheet, bool(p.grown), context);
+  const LevelSetSurface surface = level_set_surface(p.surface, given.exact.get(), p.sheet, bool(p.grown), context);
   return build_level_set(surface, p.grown ? p.grown.voxels : p.sites, p.sheet, {band_vox, p.closing_vox}, context);
 }
 

@@ -10,6 +10,7 @@
 namespace isoshell {
 
 struct PlainBuildShell;
+struct PlainDilate;
 struct PlainFindOutside;
 struct PlainLabelSheet;
 struct PlainListSiteTriangles;
@@ -45,6 +46,9 @@ struct PlainKernels {
 
   // build_shell
   using LeafPasses = shell_steps::PlainLeafPasses;  ///< voxels within reach, closest sites of a leaf: shell_body.h
+
+  // build_level_set
+  using Dilate = PlainDilate;  ///< a set of voxels by a ball: sparse/reach.h
 
   // build_sheet, build_proxy
   using BuildShell = PlainBuildShell;                       ///< the shell that closing needs: shell_body.h

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "isoshell/advanced/lattice_surface.h"
+#include "isoshell/advanced/level_set.h"
 #include "isoshell/advanced/seed_set.h"
 #include "isoshell/advanced/sheet.h"
 #include "isoshell/advanced/shell.h"
@@ -20,6 +21,7 @@ uint64_t digest(const VoxelSet& voxels);
 uint64_t digest(const SiteSet& sites);
 uint64_t digest(const SiteSamples& samples);
 uint64_t digest(const Shell& shell);
+uint64_t digest(const LevelSet& level_set);
 uint64_t digest(const Sheet& sheet);
 uint64_t digest(const SeedSet& seeds);
 uint64_t digest(const VoronoiLabels& labels);

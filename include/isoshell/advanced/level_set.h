@@ -13,7 +13,7 @@ constexpr double kMaxLevelSetBandVox = 16;
 
 /// What distances are measured to, in voxels of the lattice: voxel i covers [i, i + 1].
 struct LevelSetSurface {
-  Buffer<WorldPoint> corner;  ///< three a triangle
+  Buffer<WorldPoint> corner;   ///< three a triangle
   int64_t first_of_sheet = 0;  ///< triangles from this one on are the sheet's, the others are the input's
 };
 
@@ -34,9 +34,9 @@ struct LevelSetOptions {
   int32_t closing_vox = 0;  ///< that the sheet was made with
 };
 
-/// The surface of a level set: the input's triangles, and where the sheet bridges gaps its own. `exact` are the vertices
-/// and triangles that were snapped; without it the snapped positions count. Where the sheet bounds more than the sites
-/// do, as around surfaces without thickness, it is the surface by itself (`only_sheet`). On the host.
+/// The surface of a level set: the input's triangles, and where the sheet bridges gaps its own. `exact` are the
+/// vertices and triangles that were snapped; without it the snapped positions count. Where the sheet bounds more than
+/// the sites do, as around surfaces without thickness, it is the surface by itself (`only_sheet`). On the host.
 LevelSetSurface level_set_surface(const LatticeSurface& surface, const TriangleSoup* exact, const Sheet& sheet,
                                   bool only_sheet, Context& context);
 

@@ -2,6 +2,7 @@
 // either memory and copies what lies in the other one.
 #pragma once
 
+#include "isoshell/advanced/level_set.h"
 #include "isoshell/advanced/stages.h"
 
 namespace isoshell {
@@ -11,6 +12,7 @@ LatticeSurface to_host(const LatticeSurface& surface);
 SiteSet to_host(const SiteSet& sites);
 SiteSamples to_host(const SiteSamples& samples);
 Shell to_host(const Shell& shell);
+LevelSet to_host(const LevelSet& level_set);
 SurfaceMesh to_host(const SurfaceMesh& surface);
 Sheet to_host(const Sheet& sheet);
 SeedSet to_host(const SeedSet& seeds);

@@ -10,8 +10,10 @@ namespace isoshell {
 LevelSet CpuBackend::build_level_set(const LevelSetSurface& surface, const SiteSet& sites, const Sheet& sheet,
                                      const LevelSetOptions& options, Context& context) const {
   CpuExecutor exec(context, "level-set");
-  return run_with_threads(
-      context, [&] { return build_level_set_body(exec, surface, *OnHost(sites), *OnHost(sheet), options); });
+  return run_with_threads(context, [&] {
+    return build_level_set_body(exec, surface.corner.view(), surface.first_of_sheet, *OnHost(sites), *OnHost(sheet),
+                                options);
+  });
 }
 
 }  // namespace isoshell

@@ -43,9 +43,4 @@ bool is_stage_file(const std::string& path) {
   }
 }
 
-StageFile read_stage(const std::string& path) {
-  ReadingBudget no_limit;
-  return read_stage(MeshSource(path, no_limit));
-}
-
 }  // namespace isoshell

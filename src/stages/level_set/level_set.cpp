@@ -1,4 +1,4 @@
-// build_level_set: checks its arguments and runs on the CPU, for a device too.
+// build_level_set: checks its arguments, then runs on the backend that the context asks for.
 #include "isoshell/advanced/level_set.h"
 
 #include <string>
@@ -71,7 +71,7 @@ LevelSet build_level_set(const LevelSetSurface& surface, const SiteSet& sites, c
     throw Error(ErrorCode::usage, "level-set",
                 "band_vox is " + std::to_string(options.band_vox) + "; it must be 1 to " +
                     std::to_string(int(kMaxLevelSetBandVox)));
-  return cpu_backend().build_level_set(surface, sites, sheet, options, context);
+  return backend_for(context).build_level_set(surface, sites, sheet, options, context);
 }
 
 }  // namespace isoshell

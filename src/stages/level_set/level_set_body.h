@@ -65,8 +65,7 @@ void find_sides(Exec& exec, const SideBySolid& by_solid, const BlockSteps& steps
   exec.for_each("block steps", candidates.leaf_key.size, steps);
   Buffer<uint8_t> found = exec.template make<uint8_t>(open.size());
   for (int32_t round = 0; round < rounds; ++round) {
-    exec.for_each("spread sides", open.size(),
-                  SpreadSides{candidates, open.view(), side, steps.blocked, found.view()});
+    exec.for_each("spread sides", open.size(), SpreadSides{candidates, open.view(), side, steps.blocked, found.view()});
     exec.for_each("take sides", open.size(), TakeSides{open.view(), found.view(), side});
   }
 }
@@ -74,10 +73,10 @@ void find_sides(Exec& exec, const SideBySolid& by_solid, const BlockSteps& steps
 }  // namespace level_set_steps
 
 template <class Exec>
-LevelSet build_level_set_body(Exec& exec, const LevelSetSurface& surface, const SiteSet& sites, const Sheet& sheet,
-                              const LevelSetOptions& options) {
+LevelSet build_level_set_body(Exec& exec, View<const WorldPoint> triangle_corner, int64_t first_of_sheet,
+                              const SiteSet& sites, const Sheet& sheet, const LevelSetOptions& options) {
   using namespace level_set_steps;
-  using LeafPasses = typename Exec::Kernels::LeafPasses;
+  using Dilate = typename Exec::Kernels::Dilate;
   LevelSet level_set;
   level_set.frame = sheet.frame;
   level_set.band_vox = options.band_vox;
@@ -87,20 +86,21 @@ LevelSet build_level_set_body(Exec& exec, const LevelSetSurface& surface, const 
   exec.for_each("list corners", sheet.corners.leaf_count(), ListCorners{sheet.corners.view(), corner.view()});
   const BoundaryFaces faces{sheet.triangles.view(), corner.view()};
   const int32_t near_vox = std::max(options.closing_vox, 1) + 1;
-  const VoxelSet rim = rim_of(exec, faces, extent);
-  const VoxelSet near_sheet = reach_steps::reach<LeafPasses>(exec, rim.view(), ball_of_radius(near_vox));
-  const bool has_bridges = 3 * surface.first_of_sheet < surface.corner.size();
-  // Sites hold what counts of the input, and what is near the sheet holds the sheet.
-  const VoxelSet holding = has_bridges ? VoxelSet{} : intersection(exec, sites.voxels.view(), near_sheet.view());
+  SiteSet rim, near_sheet, holding;
+  rim.voxels = rim_of(exec, faces, extent);
+  near_sheet.voxels = Dilate::run(exec, rim, near_vox);
+  // Sites hold what counts of the input, and what is near the sheet holds the sheet, which counts where it bridges
+  // gaps.
+  const bool has_bridges = 3 * first_of_sheet < triangle_corner.size;
+  if (!has_bridges) holding.voxels = intersection(exec, sites.voxels.view(), near_sheet.voxels.view());
   constexpr double kHalfDiagonal = 0.87;  // of a voxel, from whose centre the reach counts
   const VoxelSet candidate_set =
-      reach_steps::reach<LeafPasses>(exec, has_bridges ? near_sheet.view() : holding.view(),
-                                     ball_of_radius(int32_t(std::ceil(options.band_vox + kHalfDiagonal))));
-  const VoxelSetView candidates = candidate_set.view();
+      Dilate::run(exec, has_bridges ? near_sheet : holding, int32_t(std::ceil(options.band_vox + kHalfDiagonal)));
+  const VoxelSetView candidates = candidate_set.view(), near_view = near_sheet.voxels.view();
 
-  Buffer<Sphere> sphere = exec.template make<Sphere>(surface.corner.size() / 3);
-  exec.for_each("spheres", sphere.size(), FindSphere{surface.corner.view(), sphere.view()});
-  const Triangles triangles{surface.corner.view(), sphere.view(), surface.first_of_sheet, near_sheet.view()};
+  Buffer<Sphere> sphere = exec.template make<Sphere>(triangle_corner.size / 3);
+  exec.for_each("spheres", sphere.size(), FindSphere{triangle_corner, sphere.view()});
+  const Triangles triangles{triangle_corner, sphere.view(), first_of_sheet, near_view};
   Lists lists = list_triangles(exec, {triangles, candidates, options.band_vox});
   Buffer<float> distance = exec.template make<float>(candidate_set.voxel_count());
   exec.fill(distance.view(), float(options.band_vox));
@@ -112,17 +112,16 @@ LevelSet build_level_set_body(Exec& exec, const LevelSetSurface& surface, const 
   const Buffer<uint64_t> rows = rows_of_solid(exec, faces);
   Buffer<uint8_t> side = exec.template make<uint8_t>(distance.size()),
                   blocked = exec.template make<uint8_t>(distance.size());
-  find_sides(exec,
-             {candidates, sites.voxels.view(), near_sheet.view(), {rows.view()}, distance.view(), side.view()},
-             {triangles, candidates, lists.first.view(), lists.triangle.view(), distance.view(), side.view(),
-              blocked.view()},
-             near_vox + 2);
+  find_sides(
+      exec, {candidates, sites.voxels.view(), near_view, {rows.view()}, distance.view(), side.view()},
+      {triangles, candidates, lists.first.view(), lists.triangle.view(), distance.view(), side.view(), blocked.view()},
+      near_vox + 2);
 
   level_set.voxels = voxel_set_of(exec, candidates.leaf_key, active.view(), extent);
   level_set.distance_vox = exec.template make<float>(level_set.voxels.voxel_count());
-  exec.for_each("store leaves", level_set.voxels.leaf_count(),
-                StoreLeaf{candidates, level_set.voxels.view(), distance.view(), side.view(),
-                          level_set.distance_vox.view()});
+  exec.for_each(
+      "store leaves", level_set.voxels.leaf_count(),
+      StoreLeaf{candidates, level_set.voxels.view(), distance.view(), side.view(), level_set.distance_vox.view()});
   return level_set;
 }
 

@@ -72,7 +72,8 @@ struct LeavesOfTriangle {
   ISOSHELL_HD void for_each(int64_t t, Visit visit) const {
     using triangle_search::larger;
     using triangle_search::smaller;
-    const WorldPoint *const c = triangles.of(t), a = c[0], b = c[1], d = c[2];
+    const WorldPoint* const c = triangles.of(t);
+    const WorldPoint a = c[0], b = c[1], d = c[2];
     const auto first = [&](double p, double q, double r) {
       return int32_t(larger(smaller(smaller(p, q), r) - band_vox - 1, 0)) >> 3;
     };

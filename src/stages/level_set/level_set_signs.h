@@ -49,8 +49,8 @@ class SeenTriangle {
   }
 
   /// Whether it meets the closed segment that is seen as the point (u, v), from one depth to a larger one. Corners and
-  /// edges belong to it: the side of a point from an edge is the same for both triangles there, so nothing slips through
-  /// between them. Of a triangle seen from its side all depths count.
+  /// edges belong to it: the side of a point from an edge is the same for both triangles there, so nothing slips
+  /// through between them. Of a triangle seen from its side all depths count.
   ISOSHELL_HD bool meets(double u, double v, double from, double to, double& depth) const {
     const double e[3] = {side(1, 2, u, v), side(2, 0, u, v), side(0, 1, u, v)};
     if (!(e[0] >= 0 && e[1] >= 0 && e[2] >= 0) && !(e[0] <= 0 && e[1] <= 0 && e[2] <= 0)) return false;
@@ -104,7 +104,8 @@ struct BlockSteps {
         if (next < 0 || (!is_open(side[i]) && !is_open(side[next]))) continue;
         constexpr float kStep = 1.001f;  // what a step meets is no farther from either end
         if (distance[i] > kStep || distance[next] > kStep) continue;
-        (distance[i] < kOnSurface || distance[next] < kOnSurface ? met : looked_at) |= 1u << axis;
+        const bool is_on_surface = distance[i] < kOnSurface || distance[next] < kOnSurface;
+        (is_on_surface ? met : looked_at) |= 1u << axis;
       }
       blocked[i] = uint8_t(met | (looked_at != 0 ? met_of(looked_at, leaf, v) : 0));
     });

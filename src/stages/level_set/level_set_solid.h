@@ -33,9 +33,8 @@ struct BoundaryFaces {
     int axis = 0;
     while (axis < 2 && (ab[axis] != 0 || ac[axis] != 0)) ++axis;
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    return {{least(a.x, b.x, c.x), least(a.y, b.y, c.y), least(a.z, b.z, c.z)},
-            axis,
-            ab[u] * ac[v] - ab[v] * ac[u] > 0};
+    return {
+        {least(a.x, b.x, c.x), least(a.y, b.y, c.y), least(a.z, b.z, c.z)}, axis, ab[u] * ac[v] - ab[v] * ac[u] > 0};
   }
 };
 
@@ -43,9 +42,8 @@ struct ListCorners {
   VoxelSetView corners;
   View<Voxel> corner;
   ISOSHELL_HD void operator()(int64_t leaf) const {
-    for_each_active(corners, leaf, [&](int offset, int64_t i) {
-      corner[i] = voxel_at(leaf_of_key(corners.leaf_key[leaf]), offset);
-    });
+    for_each_active(corners, leaf,
+                    [&](int offset, int64_t i) { corner[i] = voxel_at(leaf_of_key(corners.leaf_key[leaf]), offset); });
   }
 };
 

@@ -1,6 +1,7 @@
 // Dilation of voxel sets: every voxel within a radius of one of a set.
 #pragma once
 
+#include "isoshell/advanced/site_set.h"
 #include "stages/sparse/drop_empty_leaves.h"
 #include "voxel/atomic.h"
 #include "voxel/closest.h"
@@ -168,4 +169,14 @@ VoxelSet reach(Exec& exec, const VoxelSetView& sites, const Ball& ball) {
 }
 
 }  // namespace reach_steps
+
+/// The voxels within a radius of those of a set, for a body that needs no closest sites.
+struct PlainDilate {
+  template <class Exec>
+  static VoxelSet run(Exec& exec, const SiteSet& sites, int32_t radius_vox) {
+    return reach_steps::reach<typename Exec::Kernels::LeafPasses>(exec, sites.voxels.view(),
+                                                                  ball_of_radius(radius_vox));
+  }
+};
+
 }  // namespace isoshell
