@@ -166,9 +166,11 @@ std::string file_of_sizing(const std::string& sizing) {
 }
 
 std::vector<NamedFile> inputs_of(const RunRequest& r) {
-  return {{kInput, r.input.path},
-          {"--sizing", file_of_sizing(r.options.sizing)},
-          {"--features", r.options.values.line_file}};
+  std::vector<NamedFile> files = {{kInput, r.input.path},
+                                  {"--sizing", file_of_sizing(r.options.sizing)},
+                                  {"--features", r.options.values.line_file}};
+  for (const std::string& name : r.input.grids) files.push_back({"--grids", grid_name_of(name).file});
+  return files;
 }
 
 void check_request(const RunRequest& r) {
@@ -181,6 +183,8 @@ void check_request(const RunRequest& r) {
   if (!r.report.empty() && r.stop_after != StopAfter::mesh) refuse_use("--report needs a mesh; leave out --stop-after");
   if (!r.split_regions.empty() && r.stop_after != StopAfter::mesh)
     refuse_use("--split-regions needs a mesh; leave out --stop-after");
+  if (!r.input.grids.empty() && r.stop_after != StopAfter::mesh)
+    refuse_use("--grids needs a mesh; leave out --stop-after");
   if (r.report == "-") refuse_use("--report cannot be written to standard output; name a file");
   possible_features(r.options.values, r);
   check_one_to_pipe(outputs_of(r));
