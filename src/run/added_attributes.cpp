@@ -51,7 +51,7 @@ std::vector<Attribute> attributes_of(Attribute values) {
   const auto count = size_t(values.components);
   std::vector<Attribute> parts(count);
   for (size_t i = 0; i < count; ++i) {
-    parts[i] = {values.name + "." + std::to_string(i), values.type};
+    parts[i] = {values.name + "." + std::to_string(i), values.type, 1, {}};
     for (size_t k = i; k < values.values.size(); k += count) parts[i].values.push_back(values.values[k]);
   }
   return parts;

@@ -12,7 +12,6 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <string_view>
 #include <vector>
 
 #include "core/file_format.h"
@@ -161,8 +160,8 @@ std::vector<NamedFile> outputs_of(const RunRequest& r) {
 
 std::string file_of_sizing(const std::string& sizing) {
   if (!is_sizing_file(sizing)) return "";
-  constexpr std::string_view kEnding = ".vdb";
-  return sizing.substr(0, sizing.rfind(kEnding) + kEnding.size());
+  const GridName named = grid_name_of(sizing);
+  return named.file.empty() ? sizing : named.file;
 }
 
 std::vector<NamedFile> inputs_of(const RunRequest& r) {

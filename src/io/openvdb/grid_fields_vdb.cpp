@@ -54,7 +54,7 @@ class VdbGridField final : public GridField {
       const openvdb::Vec3d at = grid_->worldToIndex({p.x, p.y, p.z});
       return is_staggered_ ? staggered(reader, at) : plain(reader, at);
     });
-    GridValues values{{name(), kType, kCount}};
+    GridValues values{{name(), kType, kCount, {}}};
     values.values.values.reserve(found.size() * size_t(kCount));
     for (const Found& f : found) {
       for (const double number : f.number) values.values.values.push_back(nearest_of(kType, number));
