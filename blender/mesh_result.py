@@ -21,6 +21,23 @@ def new_geometry(mesh, vertices, faces):
     mesh.update(calc_edges=True)
 
 
+def write_values(mesh, values, grids):
+    """What vertices have of grids, of each as one attribute with its name."""
+    for grid in grids:
+        names = grid["attributes"]
+        if not all(name in values for name in names):
+            continue  # a mesh of regions that was made twice
+        rows = np.column_stack([values[name] for name in names])
+        if names == ["color"]:
+            kind, rows = "FLOAT_COLOR", np.column_stack([rows, np.ones(len(rows))])
+        elif rows.shape[1] == 3:
+            kind = "FLOAT_VECTOR"
+        else:
+            kind = "INT" if rows.dtype.kind in "iu" else "FLOAT"
+        name = f"{grid['name']}_" if grid["name"] in layers.OF_BLENDER else grid["name"]
+        layers.write(mesh, layers.Layer(name, kind, "POINT", rows))
+
+
 def in_object(vertices, faces, to_object):
     """Vertices in the space of an object, and faces, which look outward there."""
     return vertices @ to_object, turned(faces, np.linalg.det(to_object) < 0)

@@ -172,7 +172,7 @@ class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator
         return lambda run: taken.remesh(words | {"allow_intersections": True}, run, isoshell)
 
     def put(self, context, made):
-        result, to_object = made
+        result, to_object, grids = made
         volume = context.scene.objects[self._name]
         collections = volume.users_collection
         if self.split_regions and regions.are_in(result):
@@ -182,7 +182,7 @@ class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator
                 collection.children.link(whole)
             collections = [whole]
         else:
-            objects = [self._object(volume, result, to_object)]
+            objects = [self._object(volume, result, to_object, grids)]
             whole = objects[0]
         volume.select_set(False)
         for obj in objects:
@@ -194,11 +194,12 @@ class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator
         context.view_layer.objects.active = objects[0]
         return self._tell(whole, result)
 
-    def _object(self, volume, result, to_object):
+    def _object(self, volume, result, to_object, grids):
         """All of the result as one mesh."""
         mesh = bpy.data.meshes.new(f"{volume.name} mesh")
         mesh_result.new_geometry(mesh, *mesh_result.in_object(result.vertices, result.faces, to_object))
         mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+        mesh_result.write_values(mesh, result.attributes, grids)
         if regions.are_in(result):
             regions.write(mesh, result)
         return bpy.data.objects.new(mesh.name, mesh)

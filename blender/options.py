@@ -102,6 +102,8 @@ class Extract(Size):
     smoothing: FloatProperty(name="Smoothing", default=0.5, min=0, max=1,
                              description="Of a grid of labels: how far, in voxels, walls may leave the faces of their "
                                          "voxels to be smooth. At 0 they are these faces, flat, with creases")
+    grids: StringProperty(name="Values Of", description="Grids of the volume, as v,Cd,temperature, whose values are "
+                                                        "attributes of the mesh; all: all but the one that is meshed")
     split_regions: BoolProperty(name="Split Regions", default=False,
                                 description="Of a grid of labels: an object for each region, closed, in a collection "
                                             "with the name of the volume. Otherwise one mesh has all walls once")
@@ -109,12 +111,16 @@ class Extract(Size):
     def keywords_of_labels(self):
         """Of isoshell.remesh, for a grid of labels."""
         words = {"background": self.background} if self.use_background else {}
-        return super().keywords() | words | {"smallest_island": self.smallest_island, "smoothing": self.smoothing}
+        words |= {"smallest_island": self.smallest_island, "smoothing": self.smoothing}
+        return super().keywords() | self._keywords_of_grids() | words
 
     def keywords_of_values(self, grid_class):
         """Of isoshell.remesh, for a grid of values. What stands for no threshold is the library's to say."""
         iso = self.threshold if self.use_threshold else SURFACE_OF_CLASS.get(grid_class)
-        return super().keywords() | {"iso": iso}
+        return super().keywords() | self._keywords_of_grids() | {"iso": iso}
+
+    def _keywords_of_grids(self):
+        return {"grids": self.grids} if self.grids else {}
 
     def draw_extract(self, layout, grid=None):
         """With the name and the class of the grid where they are known."""
@@ -127,6 +133,7 @@ class Extract(Size):
             layout.prop(self, "threshold")
         elif grid and grid[1] in SURFACE_OF_CLASS:
             layout.label(text=f"Surface at {SURFACE_OF_CLASS[grid[1]]:g}")
+        layout.prop(self, "grids")
         labels = layout.box().column()
         labels.label(text="Grids of Labels")
         labels.prop(self, "use_background")

@@ -11,7 +11,7 @@ from .mesh_result import in_object
 from .mesh_source import Refused, linear_of
 
 OF_LABELS = {"INT", "INT64"}
-OF_THE_GRID = {"iso", "background", "smallest_island", "smoothing"}  # options that a mesh of it has no use for
+OF_THE_GRID = {"iso", "grids", "background", "smallest_island", "smoothing"}  # options that a mesh of it has no use for
 FINER = 4  # times as many vertices has the mesh that is made first where the object's scale is not even
 
 
@@ -75,26 +75,28 @@ class TakenVolume:
         self.grid_class = _classes_of(path).get(name, "unknown")
 
     def remesh(self, options, context, isoshell):
-        """The result, and what its vertices are multiplied by to be in the object's space. The edges are even in the
-        world."""
+        """The result, what its vertices are multiplied by to be in the object's space, and which of its attributes are
+        values of which grids. The edges are even in the world."""
         scales = np.linalg.svd(self.to_world, compute_uv=False)
         back = np.linalg.inv(self.to_world).T
         if scales[0] - scales[-1] <= 1e-6 * scales[0]:
             if "edge_length" in options:
                 options = options | {"edge_length": options["edge_length"] / scales[0]}
             result = isoshell.remesh(self.source, context=context, **options)
-            return result, np.eye(3)
+            return result, np.eye(3), result.report["attributes"]["grids"]
         fine = {name: value for name, value in options.items() if name not in ("vertices", "edge_length")}
         fine |= ({"vertices": FINER * options["vertices"]} if "vertices" in options else
                  {"edge_length": options["edge_length"] / scales[0] / 2})
         first = isoshell.remesh(self.source, context=context, **fine)
         vertices, faces = in_object(first.vertices, first.faces, self.to_world.T)
         options = {name: value for name, value in options.items() if name not in OF_THE_GRID}
-        source = (vertices, faces)
+        grids = first.report["attributes"]["grids"]
+        values = {name: first.attributes[name] for grid in grids for name in grid["attributes"]}
+        source = isoshell.Mesh(vertices, faces, of_vertices=values)
         if len(first.regions["labels"]):
             source = os.path.join(self._folder.name, "walls.ply")
             _write_walls(source, vertices, faces, first.regions)
-        return isoshell.remesh(source, context=context, **options), back
+        return isoshell.remesh(source, context=context, **options), back, grids
 
 
 def _write_walls(path, vertices, faces, regions):

@@ -91,6 +91,16 @@ def test_a_volume_without_a_file_becomes_a_mesh():
     assert_closed_manifold(faces, 500)
 
 
+@pytest.mark.parametrize("scale", [(1, 1, 1), (1, 1, 3)])
+def test_values_of_grids_are_attributes_of_the_mesh(scale):
+    volume = volume_of_ball()
+    volume.scale = scale
+    bpy.context.view_layer.update()
+    assert to_mesh(vertices=500, threshold=0.5, grids="density") == {"FINISHED"}
+    density = rows(bpy.context.object.data.attributes["density"].data, "value", 1)
+    assert len(density) == 500 and abs(density.mean() - 0.5) < 0.1
+
+
 def test_a_grid_that_is_not_there_is_refused_by_name():
     volume_of_ball()
     with pytest.raises(RuntimeError, match="has no grid smoke; its grids are density"):

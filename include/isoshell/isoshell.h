@@ -13,6 +13,7 @@
 #include "isoshell/error.h"
 #include "isoshell/gaps.h"
 #include "isoshell/io/file_format.h"
+#include "isoshell/io/grid_field.h"
 #include "isoshell/io/input.h"
 #include "isoshell/io/label_file.h"
 #include "isoshell/io/mesh_file.h"

@@ -64,6 +64,8 @@ class Options(TypedDict, total=False):
         periodic: of a volume of labels: axes of its array, as x,y,z, along which it goes on with its first layer: walls
             of one period, from the centres of that layer to those of its repetition, with the same triangles on
             opposite sides [none].
+        grids: give vertices the values of these grids of INPUT's .vdb file, as v,Cd,temperature, or of others, as
+            FILE.vdb:NAME; all: all numbers and vectors beside the grid that is meshed [none].
         input_format: format of INPUT: ply, obj, stl, off, glb, gltf, xyz, pcd, vdb or nvdb [by its name].
         output_format: format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb [by its name].
         save_shell: also write the shell, to resume from.
@@ -130,6 +132,7 @@ class Options(TypedDict, total=False):
     smallest_island: Optional[int]
     smoothing: Optional[float]
     periodic: Optional[str]
+    grids: Optional[Union[str, Sequence[str]]]
     input_format: Optional[str]
     output_format: Optional[str]
     save_shell: Optional[Path]

@@ -71,7 +71,8 @@ class Result:
 
         (K, ...) of vertices, (M, ...) of faces, (M, 3, ...) of the corners of faces: see domains. "gap" is 1 where the
         source has no surface. A frame that follows another has "born", 1 where a vertex is not the one that had its
-        number, and "vx", "vy" and "vz", its motion since then in world units. A name that attributes of two domains
+        number, and "vx", "vy" and "vz", its motion since then in world units. Values of grids have their names, vectors
+        with .0, .1 and .2 behind them, and "Cd" is "color". A name that attributes of two domains
         have is, for the second, "name:domain".
         """
         return {name: values for name, _, values, _ in self._named_attributes()}
@@ -85,6 +86,11 @@ class Result:
     def labels(self) -> dict[str, list[str]]:
         """Of the attributes whose values are numbers of names (-1: none), such as material and group: the names."""
         return {name: labels for name, _, _, labels in self._named_attributes() if labels}
+
+    def _vectors_of_grids(self) -> list[str]:
+        """The names of those attributes that are vectors of grids, each without its .0, .1 and .2."""
+        of_grids = [grid["attributes"] for grid in self.report["attributes"]["grids"]]
+        return [names[0].removesuffix(".0") for names in of_grids if len(names) == 3]
 
     @property
     def features(self) -> dict[str, Array]:

@@ -10,7 +10,7 @@ from . import _isoshell
 from ._context import Context
 from ._errors import Error, warn
 from ._isoshell import ErrorCode
-from ._keywords import keywords_of
+from ._keywords import keywords_of, text_of
 from ._paths import Path, path_text
 from ._remesh import (check_target, is_written_here, keywords_for, listener, result_of, settle, stage_files,
                       takes_stats)
@@ -215,7 +215,10 @@ class _Sequence:
             warn(str(named))
 
     def _options_of(self, frame: Number) -> dict[str, Any]:
-        replaced = {"force": True} if self._resume else {}  # what is there and does not fit
+        replaced: dict[str, Any] = {"force": True} if self._resume else {}  # what is there and does not fit
+        if self._options.get("grids") and isinstance(frame, int):
+            names = text_of("grids", self._options["grids"]).split(",")
+            replaced["grids"] = [_isoshell.grid_of_frame(name, frame) for name in names]
         return {**self._options, **replaced, **{name: _path_at(path_text(self._options[name]), frame)
                                     for name in PATTERNS if self._options.get(name)}}
 

@@ -118,6 +118,7 @@ void bind_sequence(nb::module_& m) {
   m.def("check_frames", check_frames, nb::arg("keywords"), nb::arg("source"), nb::arg("output"), nb::arg("frames"),
         nb::arg("keep_going"), nb::arg("resume"));
   m.def("path_of_frame", path_of_frame, nb::arg("pattern"), nb::arg("frame"));
+  m.def("grid_of_frame", grid_of_frame, nb::arg("name"), nb::arg("frame"));
 }
 
 }  // namespace isoshell::python

@@ -71,6 +71,15 @@ def write_obj(path: Path, vertices: np.ndarray, faces: np.ndarray) -> Path:
     return path
 
 
+def python_of_openvdb() -> str | None:
+    """A Python that has OpenVDB's module: the distribution's, or this one."""
+    for python in ("/usr/bin/python3", sys.executable):
+        probe = "try: import pyopenvdb\nexcept ImportError: import openvdb"
+        if os.path.exists(python) and subprocess.run([python, "-c", probe], capture_output=True).returncode == 0:
+            return python
+    return None
+
+
 @pytest.fixture(scope="session")
 def ball() -> Mesh:
     return make_ball()

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import isoshell
 import numpy as np
 import pytest
-from conftest import FOREVER, SOURCE, Mesh, write_obj
+from conftest import FOREVER, SOURCE, Mesh, python_of_openvdb, write_obj
 
 RECIPES = SOURCE / "examples/recipes"
 
@@ -23,15 +23,6 @@ def run(recipe: str, *arguments: object, python: str = sys.executable) -> str:
     done = subprocess.run(command, capture_output=True, text=True, timeout=FOREVER)
     assert done.returncode == 0, done.stderr
     return done.stdout
-
-
-def python_of_openvdb() -> str | None:
-    """A Python that has OpenVDB's module: the distribution's, or this one."""
-    for python in ("/usr/bin/python3", sys.executable):
-        probe = "try: import pyopenvdb\nexcept ImportError: import openvdb"
-        if os.path.exists(python) and subprocess.run([python, "-c", probe], capture_output=True).returncode == 0:
-            return python
-    return None
 
 
 def test_a_soup_of_two_boxes_becomes_one_printable_solid(box: Mesh, tmp_path: Path) -> None:

@@ -1,4 +1,5 @@
 // Compiled instead of the files that use OpenVDB when ISOSHELL_VDB is off.
+#include "io/vdb/grid_fields.h"
 #include "io/vdb/grid_kinds.h"
 #include "io/vdb/stage_reader.h"
 #include "io/vdb/volume_readers.h"
@@ -58,6 +59,14 @@ std::shared_ptr<const VelocityField> read_velocity(const std::string& path, cons
 }
 std::shared_ptr<const VelocityField> velocity_of(const std::array<DenseVolume, 3>&, const std::string& name) {
   throw_without_openvdb(ErrorCode::unreadable_input, name);
+}
+std::vector<std::shared_ptr<const GridField>> read_grid_fields(const MeshSource& source,
+                                                               const std::vector<std::string>&, const std::string&) {
+  throw_without_openvdb(ErrorCode::unreadable_input, source.name());
+}
+std::vector<std::shared_ptr<const GridField>> read_grid_fields(const std::string& path, const std::vector<std::string>&,
+                                                               int64_t) {
+  throw_without_openvdb(ErrorCode::unreadable_input, path);
 }
 StageFile read_stage(const MeshSource& source) { throw_without_openvdb(ErrorCode::unreadable_input, source.name()); }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <sstream>
 #include <unordered_set>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "geometry/given_surface.h"
 #include "geometry/world_vector.h"
 #include "io/faces/face_collector.h"
+#include "io/vdb/grid_fields.h"
 #include "io/vdb/grid_kinds.h"
 #include "io/vdb/stage_reader.h"
 #include "isoshell/advanced/stages.h"
@@ -68,6 +70,14 @@ void check_points(const PointCloud& cloud, const std::string& name) {
   if (!cloud.normal.empty() && cloud.normal.size() != cloud.position.size())
     refuse_use(name + ": there are " + std::to_string(cloud.normal.size()) + " normals and " +
                counted(int64_t(cloud.position.size()), "point") + "; give one normal a point");
+}
+
+/// Names of grids without a file of theirs.
+std::vector<std::string> own_grids(const std::vector<std::string>& names) {
+  std::vector<std::string> own;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(own),
+               [](const std::string& name) { return grid_name_of(name).file.empty(); });
+  return own;
 }
 
 [[noreturn]] void refuse_iso() { refuse_use("--iso is for volumes; leave it out"); }
@@ -223,13 +233,28 @@ class Reader {
     ReadingBudget budget(context_.memory_limit_bytes);
     const MeshSource source(request.path, budget);
     if (holds_stage({source.begin(), source.size()})) return read_stage_file(source);
-    if (holds_labels(source, request.grid)) return read_label_file(source, request);
+    if (holds_labels(source, request.grid))
+      read_label_file(source, request);
+    else
+      read_level_set(source, request);
+    read_grids(source, request);
+  }
+
+  void read_level_set(const MeshSource& source, const InputRequest& request) {
     hold_volume(request.keep_open, [&](VolumeInfo& volume) {
       return read_volume(source,
                          {request.grid, request.iso, context_.memory_limit_bytes, request.creases, VolumeSides::sample,
                           false, request.keep_open},
                          volume);
     });
+  }
+
+  /// The bytes of standard input are there no second time: all that a run takes of them is read now.
+  void read_grids(const MeshSource& source, const InputRequest& request) {
+    const std::vector<std::string> names = own_grids(request.grids);
+    if (names.empty() || is_nano_file(source)) return;
+    input_.grids = read_grid_fields(source, names, meshed_grid(source, request.grid));
+    for (const auto& grid : *input_.grids) note("grid " + grid->name() + " is sampled at the vertices");
   }
 
   void read_label_file(const MeshSource& source, const InputRequest& request) {

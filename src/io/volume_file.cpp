@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <sstream>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "implicit/volumes/field_sharpness.h"
 #include "implicit/volumes/iso_surface.h"
 #include "implicit/volumes/unsigned_field.h"
+#include "io/vdb/grid_kinds.h"
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
@@ -202,8 +202,8 @@ TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& optio
 
 TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info) {
   if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with a volume");
-  const bool nano = source.size() >= 7 && std::memcmp(source.begin(), "NanoVDB", 7) == 0;
-  std::unique_ptr<ScalarField> field = nano ? read_nano_volume(source, options) : read_vdb_volume(source, options);
+  std::unique_ptr<ScalarField> field =
+      is_nano_file(source) ? read_nano_volume(source, options) : read_vdb_volume(source, options);
   field->file = source.name();
   check_map(*field);
   if (field->is_band_alone()) field = with_points_beside_band(std::move(field), options.memory_limit_bytes);

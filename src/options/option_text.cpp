@@ -148,11 +148,15 @@ std::string region_edge_lengths_text(const std::vector<RegionEdgeLength>& length
 
 std::optional<std::vector<std::string>> parse_attributes(const std::string& option, const std::string& text) {
   if (text == "all") return std::nullopt;
+  if (text == "none") return std::vector<std::string>();
+  return parse_names(option, text, "all, none, or ");
+}
+
+std::vector<std::string> parse_names(const std::string& option, const std::string& text, const std::string& others) {
   std::vector<std::string> names;
-  if (text == "none") return names;
   std::istringstream parts(text + ",");
   for (std::string name; std::getline(parts, name, ',');) {
-    if (name.empty()) refuse(option + " is '" + text + "'; it must be all, none, or names separated by commas");
+    if (name.empty()) refuse(option + " is '" + text + "'; it must be " + others + "names separated by commas");
     names.push_back(name);
   }
   return names;

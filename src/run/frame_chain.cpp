@@ -78,6 +78,8 @@ uint64_t digest_of_input(const Input& input) {
   uint64_t sum =
       digest_of({digest_of(soup.vertices), digest_of(soup.triangles), digest_of(soup.regions), digest_of(soup.files)});
   for (const Attribute& attribute : soup.attributes) sum = digest_of({sum, digest_of(attribute)});
+  if (input.grids)
+    for (const auto& grid : *input.grids) sum = digest_of({sum, grid->digest()});
   return sum;
 }
 
@@ -107,6 +109,7 @@ uint64_t digest_of_options(const RunRequest& request, const Input& input, FileDi
                      (options.lengths_decide() ? " lengths decide" : "");
   const std::string& sizing = options.sizing;
   if (!sizing.empty()) text += " sizing " + sizing.substr(file_of_sizing(sizing).size());
+  for (const std::string& name : request.input.grids) text += " grid " + grid_name_of(name).grid;
   const std::vector<WorldPoint> offset = {request.output.recenter.offset()};
   uint64_t sum = digest_of({digest_of(text), uint64_t(request.stop_after), digest_of(offset)});
   for (const NamedFile& file : inputs_of(request))

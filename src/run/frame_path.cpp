@@ -12,6 +12,11 @@ constexpr int64_t kMostFrames = 10'000'000;
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "frames", message); }
 
+const std::regex& place() {
+  static const std::regex place("#+|%0?([1-9]?)d");
+  return place;
+}
+
 std::string padded(int64_t number, size_t digits) {
   std::string text = std::to_string(number);
   return std::string(digits > text.size() ? digits - text.size() : 0, '0') + text;
@@ -38,12 +43,11 @@ FrameRange parse_frames(const std::string& text) {
 }
 
 std::string path_of_frame(const std::string& pattern, int64_t frame) {
-  static const std::regex place("#+|%0?([1-9]?)d");
   std::string path;
   std::smatch found;
   auto from = pattern.cbegin();
   int places = 0;
-  for (; std::regex_search(from, pattern.cend(), found, place); from = found[0].second, ++places) {
+  for (; std::regex_search(from, pattern.cend(), found, place()); from = found[0].second, ++places) {
     const std::string sign = found[0];
     const size_t digits = sign[0] == '#'          ? sign.size()
                           : found[1].length() > 0 ? size_t(sign[sign.size() - 2] - '0')
@@ -56,6 +60,11 @@ std::string path_of_frame(const std::string& pattern, int64_t frame) {
     refuse("'" + pattern + "' has " + (places == 0 ? "no place" : "more than one place") +
            " for the number of a frame; with --frames, every file has one, as in mesh.####.ply or mesh.%04d.ply");
   return path;
+}
+
+std::string grid_of_frame(const std::string& name, int64_t frame) {
+  const GridName named = grid_name_of(name);
+  return std::regex_search(named.file, place()) ? path_of_frame(named.file, frame) + ":" + named.grid : name;
 }
 
 }  // namespace isoshell

@@ -12,7 +12,6 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <string_view>
 #include <vector>
 
 #include "core/file_format.h"
@@ -159,14 +158,16 @@ std::vector<NamedFile> outputs_of(const RunRequest& r) {
 
 std::string file_of_sizing(const std::string& sizing) {
   if (!is_sizing_file(sizing)) return "";
-  constexpr std::string_view kEnding = ".vdb";
-  return sizing.substr(0, sizing.rfind(kEnding) + kEnding.size());
+  const GridName named = grid_name_of(sizing);
+  return named.file.empty() ? sizing : named.file;
 }
 
 std::vector<NamedFile> inputs_of(const RunRequest& r) {
-  return {{kInput, r.input.path},
-          {"--sizing", file_of_sizing(r.options.sizing)},
-          {"--features", r.options.values.line_file}};
+  std::vector<NamedFile> files = {{kInput, r.input.path},
+                                  {"--sizing", file_of_sizing(r.options.sizing)},
+                                  {"--features", r.options.values.line_file}};
+  for (const std::string& name : r.input.grids) files.push_back({"--grids", grid_name_of(name).file});
+  return files;
 }
 
 void check_request(const RunRequest& r) {
@@ -179,6 +180,8 @@ void check_request(const RunRequest& r) {
   if (!r.report.empty() && r.stop_after != StopAfter::mesh) refuse_use("--report needs a mesh; leave out --stop-after");
   if (!r.split_regions.empty() && r.stop_after != StopAfter::mesh)
     refuse_use("--split-regions needs a mesh; leave out --stop-after");
+  if (!r.input.grids.empty() && r.stop_after != StopAfter::mesh)
+    refuse_use("--grids needs a mesh; leave out --stop-after");
   if (r.report == "-") refuse_use("--report cannot be written to standard output; name a file");
   possible_features(r.options.values, r);
   check_one_to_pipe(outputs_of(r));

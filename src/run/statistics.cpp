@@ -138,7 +138,10 @@ Json attributes_json(const AttributeReport& r) {
   Json kept = Json::array(), dropped = Json::array();
   for (const std::string& name : r.kept) kept.push_back(name);
   for (const DroppedAttribute& d : r.dropped) dropped.push_back({{"name", d.name}, {"reason", d.reason}});
-  return {{"kept", kept}, {"dropped", dropped}};
+  Json grids = Json::array();
+  for (const SampledGrid& g : r.grids)
+    grids.push_back({{"name", g.name}, {"attributes", g.attributes}, {"vertices_outside", g.vertices_outside}});
+  return {{"kept", kept}, {"dropped", dropped}, {"grids", grids}};
 }
 
 Json topology_json(const RunRecord& r) {

@@ -12,10 +12,10 @@
 #include "isoshell/repair.h"
 #include "isoshell/transfer_attributes.h"
 #include "progress/step.h"
+#include "run/added_attributes.h"
 #include "run/choose_attributes.h"
 #include "run/color_features.h"
 #include "run/measures.h"
-#include "run/motion_attributes.h"
 #include "run/outputs.h"
 #include "run/part_walls.h"
 #include "run/process_memory.h"
@@ -83,6 +83,8 @@ class RunSteps::Run {
   void take(Input input) {
     input_ = std::move(input);
     record_.input = input_->facts;
+    if (!request_.input.grids.empty())
+      timed("grids", [&] { read_other_grids(request_.input.grids, *input_, *context_); });
     if (!input_->stage) return;
     options_ = adopt_options(*input_->stage, input_->facts.path, options_);
     check_together(options_);
@@ -171,6 +173,8 @@ class RunSteps::Run {
       mesh.attributes =
           timed("attributes", [&] { return transfer_attributes(soup, soup.attributes, mesh, *context_); });
     mesh.files = std::move(soup.files);
+    if (input_->grids)
+      timed("sample", [&] { add_grid_attributes(*input_, record_.output.format, mesh, record_.attributes, teller()); });
     if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
     if (options_.values.color_features) show_features(mesh);
     if (const std::string& path = record_.output.path; !path.empty())

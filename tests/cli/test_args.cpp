@@ -230,6 +230,9 @@ TEST_CASE("args: options by name mean what they mean on the command line", "[cli
       contains(refusal({"a.vdb", "b.ply", "--region-edge-length", "7=0"}), "of region 7 is 0; it must be more than 0"));
   CHECK(contains(refusal({"a.vdb", "b.ply", "--smallest-island=-1"}), "--smallest-island is -1; it must be 0 to"));
   CHECK(contains(refusal({"a.vdb", "b.ply", "--smoothing", "1.5"}), "--smoothing is 1.5; it must be 0 to 1"));
+  CHECK(parse({"a.vdb", "b.ply", "--grids", "v,o.vdb:Cd"}).run->run.input.grids ==
+        std::vector<std::string>{"v", "o.vdb:Cd"});
+  CHECK(contains(refusal({"a.vdb", "b.ply", "--grids", "v,,Cd"}), "it must be all, or names separated by commas"));
   CHECK(contains(refusal({"a.vdb", "b.ply", "--periodic", "x,w"}), "--periodic is 'x,w'; give axes, x, y or z"));
   CHECK(a.run.output.path.empty());
   CHECK(parse_given_options({}, "out.ply").run.output.format == "ply");

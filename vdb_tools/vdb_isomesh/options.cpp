@@ -56,6 +56,8 @@ void set_periodic(const std::string& text, Arguments& a) {
   a.run.input.labels.is_periodic = axes;
 }
 
+void set_grids(const std::string& text, Arguments& a) { a.run.input.grids = parse_names("--grids", text, "all, or "); }
+
 void set_threads(const std::string& text, Arguments& a) {
   const int64_t count = parse_whole("--threads", text);
   check_range("--threads", double(count), {1, 4096});
@@ -146,6 +148,11 @@ std::vector<CommandOption> file_options() {
         "period, from the centres of that layer to those of its repetition, with the same triangles on opposite sides",
         "none"},
        set_periodic},
+      {{group, "grids", "all|LIST",
+        "give vertices the values of these grids of INPUT's .vdb file, as v,Cd,temperature, or of others, as "
+        "FILE.vdb:NAME; all: all numbers and vectors beside the grid that is meshed",
+        "none"},
+       set_grids},
       {{group, "input-format", "F", "format of INPUT: " + listed_formats(reads_anything), "by its name"},
        [](const std::string& text, Arguments& a) { a.run.input.format = text; }},
       {{group, "output-format", "F", "format of OUTPUT: " + listed_formats(writes_mesh, ", ") + " or vdb",

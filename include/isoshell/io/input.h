@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "isoshell/backend.h"
+#include "isoshell/io/grid_field.h"
 #include "isoshell/io/point_file.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/volume_file.h"
@@ -50,6 +52,7 @@ struct InputRequest {
   VolumeCreases creases = VolumeCreases::none;  ///< of a volume or points; a run sets it by its features
   bool keep_open = false;                       ///< the same of borders; a run sets it by its boundary
   bool keep_points = false;                     ///< of points: no surface is made of them
+  std::vector<std::string> grids = {};  ///< whose values vertices of the result get, as grid_name_of() takes them
 };
 
 /// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or
@@ -76,13 +79,16 @@ struct Input {
   TriangleSoup soup;               ///< empty when there is a stage file, or points without a surface
   std::vector<WorldPoint> points;  ///< different ones, where they were kept as points
   std::optional<StageFile> stage;  ///< its options are for the run to read
+  /// Those that the request names; of a volume or labels of a .vdb file alone: others have none of their own, and no
+  /// list. A run adds those of other files.
+  std::optional<std::vector<std::shared_ptr<const GridField>>> grids = {};
 };
 
 /// Reads a file of any kind, and makes a surface of points, unless they are kept as points, and of volumes. Tells what
 /// was read, and warns of what of it could not be used. Throws: unreadable_input when the file is missing or of no
 /// known kind, usage for an isovalue of what is no volume and for LabelReading of what holds no labels, and as the
-/// readers of each kind do (mesh_file.h, point_file.h, volume_file.h, vdb_file.h); out_of_memory over the context's
-/// limit, and interrupted while labels become walls.
+/// readers of each kind do (mesh_file.h, point_file.h, volume_file.h, vdb_file.h, grid_field.h); out_of_memory over the
+/// context's limit, and interrupted while labels become walls.
 Input read_input(const InputRequest& request, const Context& context, const Tell& tell = {});
 /// The same with a limit alone, if that is above 0.
 Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const Tell& tell = {});

@@ -74,6 +74,8 @@ const char* uv_seams_name(UvSeams seams);
 
 /// "all", "none", or names separated by commas. Throws: usage.
 std::optional<std::vector<std::string>> parse_attributes(const std::string& option, const std::string& text);
+/// Names separated by commas, of which none is empty; `others` are words that stand for them. Throws: usage.
+std::vector<std::string> parse_names(const std::string& option, const std::string& text, const std::string& others);
 std::string attributes_text(const std::optional<std::vector<std::string>>& attributes);
 
 /// Sets the closing to gaps of this width: "auto", world units, or voxels as "4vox". Throws: usage.

@@ -45,10 +45,18 @@ struct WrittenFile {
 /// same offset.
 std::vector<std::string> warnings_of_files(const std::vector<WrittenFile>& files, const WorldPoint& offset_world);
 
-/// What the input has beside its positions, by name.
+/// A grid whose values the vertices of the result have.
+struct SampledGrid {
+  std::string name;
+  std::vector<std::string> attributes;  ///< that they are
+  int64_t vertices_outside = 0;         ///< with no active voxel around them
+};
+
+/// What the input has beside its positions, by name, and what grids add to it.
 struct AttributeReport {
   std::vector<std::string> kept;
   std::vector<DroppedAttribute> dropped;
+  std::vector<SampledGrid> grids = {};
 };
 
 /// The result is measured as its file has it, in which positions may be rounded.

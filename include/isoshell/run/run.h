@@ -68,9 +68,9 @@ struct RunResult {
 };
 
 /// Checks that every file can be written, reads, and goes on from there as the second form. Its steps are "read",
-/// "sizing", "prepare", "risks", "relax", "flood", "triangulate", "measure", "distance", "write", .... The context's
-/// progress hears of them, too, beside the stages' own. Result: the same bytes for the same input and options. Throws:
-/// as every part does; an interruption says which files were written before.
+/// "grids", "sizing", "prepare", "risks", "relax", "flood", "triangulate", "measure", "distance", "sample", "write",
+/// .... The context's progress hears of them, too, beside the stages' own. Result: the same bytes for the same input
+/// and options. Throws: as every part does; an interruption says which files were written before.
 RunResult run(const RunRequest& request, Context& context);
 /// From what was read already, or came from memory: prepares, relaxes, triangulates, measures, writes.
 RunResult run(Input input, const RunRequest& request, Context& context);

@@ -25,6 +25,9 @@ FrameRange parse_frames(const std::string& text);
 /// digits. Throws: usage when there is no place for a number, or more than one.
 std::string path_of_frame(const std::string& pattern, int64_t frame);
 
+/// A grid as --grids names it, in a frame: with its number where the name of a file has a place for it.
+std::string grid_of_frame(const std::string& name, int64_t frame);
+
 /// Frames one after the other, each beginning with the last that was made.
 class FrameChain {
  public:
@@ -87,7 +90,8 @@ struct BadFrame {
 };
 
 struct SequenceRequest {
-  RunRequest frame;  ///< of every frame; its paths are patterns, but for the sizing field and lines
+  RunRequest
+      frame;  ///< of every frame; its paths are patterns, but for the sizing field and lines; files of grids may be
   FrameRange frames;
   std::string velocity;     ///< grid of a volume's file, world units a frame; empty: none
   bool is_coherent = true;  ///< else every frame begins cold

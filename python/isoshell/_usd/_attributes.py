@@ -14,7 +14,13 @@ if TYPE_CHECKING:
 
     Array = np.ndarray[Any, np.dtype[Any]]
 
+VELOCITIES = ("v", "vel", "velocity")
 INTERPOLATIONS = {"vertex": "vertex", "face": "uniform", "corner": "faceVarying"}
+
+
+def velocity_of(result: Result) -> Optional[str]:
+    """The vectors of a grid that are velocities by its name; the first of them."""
+    return next((name for name in result._vectors_of_grids() if name in VELOCITIES), None)
 
 
 class PrimvarWriter:
@@ -41,6 +47,7 @@ class PrimvarWriter:
             self._first = self._time if self._first is None else self._first
         self._set = set()
         vectors: dict[tuple[str, str], list[Array]] = {}
+        of_grids, velocity = result._vectors_of_grids(), velocity_of(result)
         for key, domain, values, labels in result._named_attributes():
             name = key.removesuffix(f":{domain}")
             base, component = base_of(name)
@@ -55,14 +62,17 @@ class PrimvarWriter:
                 self._add_normals(result, values)
             elif is_of_corners(name):
                 self._add_uv(values, self._uv_set_of(name))
-            elif component >= 0 and base in self._origin.vectors:
+            elif component >= 0 and (base in self._origin.vectors or base in of_grids):
                 vectors.setdefault((base, domain), []).append(values)
             elif labels:
                 self._add_texts(name, domain, values, labels)
             else:
                 self._add_numbers(name, domain, values)
         for (name, domain), columns in vectors.items():
-            self._add_vectors(name, domain, columns)
+            if name == velocity:
+                self._add_velocities(columns)
+            else:
+                self._add_vectors(name, domain, columns)
         for name in set(self._made) - self._set:
             self._made[name][0].Set(self._pxr.Sdf.ValueBlock(), self._time)
 
@@ -141,6 +151,18 @@ class PrimvarWriter:
         self._set.add("normals")
         attribute.Set(self._pxr.Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(normals.reshape(-1, 3))), self._time)
 
+    def _add_velocities(self, columns: list[Array]) -> None:
+        """Those of a grid are of a frame, and USD's of a second."""
+        import numpy as np
+
+        a_second = self._mesh.GetPrim().GetStage().GetTimeCodesPerSecond()
+        attribute = self._mesh.CreateVelocitiesAttr()
+        if "velocities" not in self._made:
+            self._keep("velocities", attribute, "vertex", None)
+        self._set.add("velocities")
+        rows = np.ascontiguousarray(np.column_stack(columns) * a_second, np.float32)
+        attribute.Set(self._pxr.Vt.Vec3fArray.FromNumpy(rows), self._time)
+
     def _add_texts(self, name: str, domain: str, values: Array, labels: list[str]) -> None:
         import numpy as np
 
@@ -162,10 +184,12 @@ class PrimvarWriter:
         self._put(name, type_name, interpolation, array.FromNumpy(np.ascontiguousarray(values, dtype)))
 
     def _add_vectors(self, name: str, domain: str, columns: list[Array]) -> None:
-        """In the source's type; where a run kept some of the numbers only, each by itself."""
+        """In the source's type, or that of the numbers; where a run kept some of these only, each by itself."""
         import numpy as np
 
-        type_name = self._pxr.Sdf.ValueTypeNames.Find(self._origin.vectors[name].removesuffix("[]") + "[]")
+        of_numbers = {"f4": "float3", "f8": "double3"}.get(columns[0].dtype.str[1:], "int3")
+        kind = self._origin.vectors.get(name, of_numbers).removesuffix("[]")
+        type_name = self._pxr.Sdf.ValueTypeNames.Find(kind + "[]")
         array = type_name.type.pythonClass
         row = np.array(array(1))
         if row.shape[1] != len(columns):

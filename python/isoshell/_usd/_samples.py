@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 from .._paths import writing
 from .._result import Result
 from . import Origin, library, reason_of
-from ._attributes import PrimvarWriter
+from ._attributes import PrimvarWriter, velocity_of
 from ._materials import write_materials
 from ._regions import SampledRegions
 from ._write import MATERIALS, begin_stage, define_mesh, offset_of, save_stage, write_shape
@@ -97,9 +97,12 @@ class SampledStage:
         self._regions = SampledRegions(pxr, self._mesh)
 
     def _add_velocities(self, result: Result, time: Any) -> None:
-        """The motion since the sample before, in units a second; none where a frame follows no other."""
+        """The motion since the sample before, in units a second; none where a frame follows no other. Those of a grid
+        take its place."""
         import numpy as np
 
+        if velocity_of(result) is not None:
+            return
         parts = [result.attributes[name] for name in MOTION if result.domains.get(name) == "vertex"]
         attribute = self._mesh.GetVelocitiesAttr()
         if self._last is not None and result.frame is not None and len(parts) == len(MOTION):

@@ -12,23 +12,13 @@
 #include "io/openvdb/vdb_stream.h"
 #include "io/vdb/vdb_cursor.h"
 #include "isoshell/error.h"
+#include "isoshell/io/grid_field.h"
 
 namespace isoshell {
 namespace {
 
 constexpr FieldKind kEdgeLengths{"Tree_float_5_4_3", "floats", "a sizing field is a FloatGrid of edge lengths",
                                  "the field"};
-
-struct Source {
-  std::string path, grid;  ///< grid empty: the only float grid
-};
-
-/// A name may hold colons; what follows ".vdb:" is the grid's.
-Source parse_source(const std::string& text) {
-  const size_t at = text.rfind(".vdb:");
-  if (at == std::string::npos) return {text, ""};
-  return {text.substr(0, at + 4), text.substr(at + 5)};
-}
 
 bool is_length(double value) { return value > 0 && std::isfinite(value); }
 
@@ -70,12 +60,13 @@ class VdbSizing final : public SizingField {
   template <class Reader>
   double length_at(Reader& reader, WorldPoint p) const {
     double sum = 0, weights = 0;
-    for_each_voxel_around(*grid_, reader, {p.x, p.y, p.z}, [&](double weight, bool is_active, float value) {
-      const double length = is_active ? double(value) : background_;
-      if (!(length > 0)) return;
-      sum += weight * length;
-      weights += weight;
-    });
+    for_each_voxel_around(reader, grid_->worldToIndex({p.x, p.y, p.z}),
+                          [&](double weight, bool is_active, float value) {
+                            const double length = is_active ? double(value) : background_;
+                            if (!(length > 0)) return;
+                            sum += weight * length;
+                            weights += weight;
+                          });
     return weights > 0 ? sum / weights : 0;
   }
 
@@ -87,10 +78,11 @@ class VdbSizing final : public SizingField {
 }  // namespace
 
 std::shared_ptr<const SizingField> read_sizing(const std::string& text, int64_t max_bytes) {
-  const Source source = parse_source(text);
-  const auto grid =
-      std::static_pointer_cast<const VdbFloatGrid>(read_field_grid(source.path, source.grid, kEdgeLengths, max_bytes));
-  check_values(source.path, *grid);
+  const GridName named = grid_name_of(text);
+  const std::string path = named.file.empty() ? text : named.file;
+  const std::string name = named.file.empty() ? "" : named.grid;
+  const auto grid = std::static_pointer_cast<const VdbFloatGrid>(read_field_grid(path, name, kEdgeLengths, max_bytes));
+  check_values(path, *grid);
   return std::make_shared<VdbSizing>(text, grid);
 }
 

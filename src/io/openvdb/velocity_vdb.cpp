@@ -53,11 +53,12 @@ class VdbVelocity final : public VelocityField {
   WorldPoint velocity_at(Reader& reader, WorldPoint p) const {
     WorldPoint sum{0, 0, 0};
     double weights = 0;
-    for_each_voxel_around(*grid_, reader, {p.x, p.y, p.z}, [&](double weight, bool is_active, openvdb::Vec3f value) {
-      if (!is_active) return;
-      sum = sum + weight * WorldPoint{value.x(), value.y(), value.z()};
-      weights += weight;
-    });
+    for_each_voxel_around(reader, grid_->worldToIndex({p.x, p.y, p.z}),
+                          [&](double weight, bool is_active, openvdb::Vec3f value) {
+                            if (!is_active) return;
+                            sum = sum + weight * WorldPoint{value.x(), value.y(), value.z()};
+                            weights += weight;
+                          });
     constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
     return weights > 0 ? (1 / weights) * sum : WorldPoint{kNothing, kNothing, kNothing};
   }

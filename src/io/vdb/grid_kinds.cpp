@@ -56,10 +56,21 @@ VolumeGrid as_labels(const VdbGridSpan& span) {
   return grid;
 }
 
-bool holds_labels(const MeshSource& source, const std::string& grid) {
+bool is_nano_file(const MeshSource& source) {
   const size_t start_bytes = sizeof kNanoStart - 1;
-  const bool nano = source.size() >= int64_t(start_bytes) && std::memcmp(source.begin(), kNanoStart, start_bytes) == 0;
-  if (source.size() == 0 || nano) return false;
+  return source.size() >= int64_t(start_bytes) && std::memcmp(source.begin(), kNanoStart, start_bytes) == 0;
+}
+
+std::string meshed_grid(const MeshSource& source, const std::string& grid) {
+  const bool is_of_labels = holds_labels(source, grid);
+  const VdbLayout layout = read_vdb_layout(source.name(), {source.begin(), source.size()});
+  std::vector<VolumeGrid> grids;
+  for (const VdbGridSpan& span : layout.grids) grids.push_back(is_of_labels ? as_labels(span) : as_volume(span));
+  return with_names_apart(layout.grids)[choose_grid(source.name(), grids, {grid})].name;
+}
+
+bool holds_labels(const MeshSource& source, const std::string& grid) {
+  if (source.size() == 0 || is_nano_file(source)) return false;
   const VdbLayout layout = read_vdb_layout(source.name(), {source.begin(), source.size()});
   const std::vector<VdbGridSpan> named = with_names_apart(layout.grids);
   bool has_labels = false;

@@ -18,6 +18,12 @@ VolumeGrid as_labels(const VdbGridSpan& span);
 /// volume. Reads descriptors only. Throws: unreadable_input for a damaged .vdb file.
 bool holds_labels(const MeshSource& source, const std::string& grid);
 
+/// Whether the source is a .nvdb file by its first bytes.
+bool is_nano_file(const MeshSource& source);
+
+/// The name, apart from all others, of the grid that such an input is made of. Throws: as reading it does.
+std::string meshed_grid(const MeshSource& source, const std::string& grid);
+
 /// A volume of labels and the name of the grid that it was.
 struct LabelGrid {
   std::string name;
