@@ -66,7 +66,9 @@ std::string meshed_grid(const MeshSource& source, const std::string& grid) {
   const VdbLayout layout = read_vdb_layout(source.name(), {source.begin(), source.size()});
   std::vector<VolumeGrid> grids;
   for (const VdbGridSpan& span : layout.grids) grids.push_back(is_of_labels ? as_labels(span) : as_volume(span));
-  return with_names_apart(layout.grids)[choose_grid(source.name(), grids, {grid})].name;
+  VolumeReadOptions options;
+  options.grid = grid;
+  return with_names_apart(layout.grids)[choose_grid(source.name(), grids, options)].name;
 }
 
 bool holds_labels(const MeshSource& source, const std::string& grid) {
