@@ -15,6 +15,7 @@ from . import _enough_threads as _enough_threads  # before what it looks ahead f
 from . import _isoshell
 from ._context import Context, Progress
 from ._errors import Error, RunWarning
+from ._fill import Filled
 from ._isoshell import VERSION as __version__
 from ._isoshell import ErrorCode
 from ._labels import Labels
@@ -31,11 +32,11 @@ from ._stages import Stages
 if _TYPE_CHECKING:
     from . import usd as usd
 
-__all__ = ["Context", "Error", "ErrorCode", "Frames", "Labels", "Mesh", "Options", "Points", "Progress", "Result", "RunWarning",
+__all__ = ["Context", "Error", "ErrorCode", "Filled", "Frames", "Labels", "Mesh", "Options", "Points", "Progress", "Result", "RunWarning",
            "Stages", "Volume", "__version__", "estimate", "mesh_info", "remesh", "remesh_many", "remesh_sequence",
            "report"]
 
-for _name in ("Context", "Error", "Frames", "Labels", "Mesh", "Points", "Progress", "Result", "RunWarning", "Stages", "Volume",
+for _name in ("Context", "Error", "Filled", "Frames", "Labels", "Mesh", "Points", "Progress", "Result", "RunWarning", "Stages", "Volume",
               "estimate", "mesh_info", "remesh", "remesh_many", "remesh_sequence", "report"):
     globals()[_name].__module__ = __name__
 

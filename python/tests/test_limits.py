@@ -280,7 +280,9 @@ def test_largest_deviation(run, tmp_path, nefertiti, claim):
 def test_memory_of_a_run_that_resumes(run, tmp_path, claim):
     source = write_obj(tmp_path / "ball.obj", *make_ball())
     run(source, "--vertices", 200, "--stop-after", "shell", output="shell.vdb")
-    done = run(tmp_path / "shell.vdb", "--vertices", 200, "--max-memory", "1M")
+    stage = tmp_path / "shell.vdb"
+    assert run(stage, "--vertices", 200, "--max-memory", "100K").status == 7
+    done = run(stage, "--vertices", 200, "--max-memory", str(stage.stat().st_size + 1))
     assert done.status == 0 and done.stats["memory_bytes"]["estimate"] is None
 
 

@@ -79,14 +79,14 @@ case "$name" in
     expect "bash, OUTPUT" "scan.ply scan.vdb shells" "$(in_bash --vertices 10 a.ply s)"
     expect "bash, a third file" "" "$(in_bash a.ply b.ply s)"
     expect "bash, a number" "" "$(in_bash --vertices "")"
-    expect "bash, options" "--save-shell --save-voronoi" "$(in_bash --save)"
+    expect "bash, options" "--save-shell --save-voronoi --save-level-set" "$(in_bash --save)"
     expect "bash, formats" "gltf glb" "$(in_bash --output-format g)"
     expect "bash, OUTPUT as an option" "scan.ply scan.vdb shells" "$(in_bash a.ply -o s)"
     if have fish; then
       expect "fish, a choice" "close keep" "$(in_fish a.ply b.ply --boundary "")"
       expect "fish, a file of an option" "scan.vdb shells/" "$(in_fish --save-shell s)"
       expect "fish, INPUT" "scan.ply scan.vdb shells/" "$(in_fish s)"
-      expect "fish, options" "--save-shell --save-voronoi" "$(in_fish --save)"
+      expect "fish, options" "--save-shell --save-voronoi --save-level-set" "$(in_fish --save)"
     fi
     if have zsh; then
       zsh_shows "zsh, a choice" "^close +keep" "$name a.ply b.ply --boundary "

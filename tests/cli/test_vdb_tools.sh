@@ -3,7 +3,7 @@
 # Usage: test_vdb_tools.sh WRITER COMMAND. The writer writes stage files and a preview into the folder that it is given.
 set -eu
 writer=$1
-command=$2
+command=$(realpath "$2")
 python="${PYTHON:-/usr/bin/python3} -s"  # a user's own NumPy may not fit the system's module
 skip() {
   echo "skipped: $1"
@@ -63,4 +63,22 @@ cmp "$folder/file.ply" "$folder/stream.ply"
 "$command" "$folder/file.ply" - --stop-after level-set --resolution 48 --vertices 300 --quiet |
   vdb_tool -quiet -read stdin.vdb -ls2mesh -write "$folder/back.ply"
 test -s "$folder/back.ply"
+# The lines of docs/guide/pipelines.md, as they stand there.
+page=$(cd "$(dirname "$0")/../.." && pwd)/docs/guide/pipelines.md
+mkdir "$folder/page"
+cp "$folder/file.ply" "$folder/page/scan.ply"
+(
+  cd "$folder/page"
+  vdb_tool -quiet -sphere r=1 voxel=0.05 name=surface -grad keep=1 -write both.vdb
+  $python -c 'import pyopenvdb as vdb
+surface, v = vdb.read("both.vdb", "surface"), vdb.read("both.vdb", "grad_surface")
+v.name = "v"
+vdb.write("fluid.vdb", grids=[surface, v])'
+  vdb_isomesh() { "$command" "$@" --quiet; }
+  sed -n 's/^    \(vdb_\)/\1/p' "$page" > lines.txt
+  test "$(wc -l < lines.txt)" -eq 6
+  while read -r line; do
+    eval "$line" < /dev/null || { echo "docs/guide/pipelines.md: $line"; exit 1; }
+  done < lines.txt
+)
 echo "opened by vdb_print and pyopenvdb, and joined to vdb_tool by a pipe"

@@ -11,7 +11,7 @@ struct OtherNames {
   std::vector<std::string> theirs;  ///< lower case, without what is between their words
 };
 
-/// Of MeshLab, PyMeshLab, trimesh, pyacvd, gmsh, CGAL, Instant Meshes, gpytoolbox, Blender and Houdini.
+/// Of MeshLab, PyMeshLab, trimesh, pyacvd, gmsh, CGAL, Instant Meshes, gpytoolbox, Blender, Houdini and vdb_tool.
 const std::vector<OtherNames>& table() {
   static const std::vector<OtherNames> all = {
       {"--vertices (a closed mesh has about two faces a vertex)",
@@ -32,7 +32,10 @@ const std::vector<OtherNames>& table() {
       {"--boundary", {"boundaries", "preserveboundary", "keepboundary", "border", "borders"}},
       {"--adaptivity", {"adaptive", "curvature"}},
       {"--voxel-size", {"pitch"}},
-      {"--resolution", {"depth", "octreedepth"}},
+      {"--resolution", {"depth", "octreedepth", "dim", "dims", "dimension"}},
+      {"--level-set-band",
+       {"width", "halfwidth", "exteriorband", "interiorband", "exteriorbandwidth", "interiorbandwidth"}},
+      {"--stop-after level-set", {"levelset", "sdf", "mesh2ls", "meshtovolume"}},
       {"--threads", {"nthreads", "numthreads", "njobs", "jobs"}},
       {"--device", {"gpu", "cuda", "backend"}},
       {"--force", {"overwrite"}},
