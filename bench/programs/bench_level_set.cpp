@@ -1,21 +1,24 @@
 // The level set of a broken surface against the whole one, and against OpenVDB's meshToVolume. JSON on standard output.
 //   bench_level_set WHOLE BROKEN [--resolution R] [--band D] [--threads T] [--samples N]
-// WHOLE is closed and oriented, BROKEN is the same surface with faults. Signs of the broken one are compared with those of
-// the whole one in every voxel that both have. At N voxels drawn at random, values and signs of the whole one, ours and
-// OpenVDB's, are compared with the nearest of all triangles and the winding number. CPU times are of all threads: ours of
-// the preparation and the level set of the broken one, OpenVDB's of meshToVolume of the whole one.
+// WHOLE is closed and oriented, BROKEN is the same surface with faults. Signs of the broken one are compared with those
+// of the whole one in every voxel that both have. At about N voxels drawn at random, values and signs of the whole one,
+// ours and OpenVDB's, are compared with the nearest of all triangles and the winding number. CPU times are of all
+// threads: ours of the preparation and the level set of the broken one, OpenVDB's of meshToVolume of the whole one.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include "bench/programs/program.h"
-#include "geometry/triangle_search.h"
+#include "isoshell/advanced/level_set.h"
+#include "isoshell/io/vdb_file.h"
 #include "isoshell/isoshell.h"
-#include "voxel/leaf.h"
 
 using namespace isoshell;
 using nlohmann::json;
@@ -36,9 +39,20 @@ double cpu_now_ms() {
 }
 
 struct Timed {
-  LevelSet set;
+  openvdb::FloatGrid::Ptr grid;  ///< as OpenVDB reads it from the file
   double prepare_cpu_ms, cpu_ms;
 };
+
+openvdb::FloatGrid::Ptr through_file(const LevelSet& set) {
+  const std::string path = "bench_level_set." + std::to_string(getpid()) + ".vdb";
+  save_level_set(path, set);
+  openvdb::io::File file(path);
+  file.open(false);
+  auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("surface"));
+  file.close();
+  std::remove(path.c_str());
+  return grid;
+}
 
 Timed level_set_of(const TriangleSoup& soup, const Arguments& args) {
   bench::BackendContext context(Backend::cpu, args.threads);
@@ -46,24 +60,43 @@ Timed level_set_of(const TriangleSoup& soup, const Arguments& args) {
   options.vertices = 4000;
   options.resolution = args.resolution;
   options.features = {Features::Creases::off, 0};
-  options.want_level_set = true;
+  options.level_set_band_vox = 3;
   options.want_samples = false;
   const double before_ms = cpu_now_ms();
   const Prepared prepared = prepare(soup, options, context);
   const double prepared_ms = cpu_now_ms();
-  LevelSet set = level_set(prepared, args.band_vox, context);
-  return {std::move(set), prepared_ms - before_ms, cpu_now_ms() - prepared_ms};
+  const LevelSet set = level_set(prepared, args.band_vox, context);
+  const double done_ms = cpu_now_ms();
+  return {through_file(set), prepared_ms - before_ms, done_ms - prepared_ms};
+}
+
+using openvdb::Vec3d;
+
+Vec3d vector_of(const WorldPoint& p) { return {p.x, p.y, p.z}; }
+
+Vec3d nearest_on_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
+  const double along = (p - a).dot(b - a) / std::max((b - a).lengthSqr(), 1e-300);
+  return a + std::clamp(along, 0., 1.) * (b - a);
+}
+
+double distance_sq(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d n = (b - a).cross(c - a);
+  const bool is_over = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 &&
+                       n.dot((a - c).cross(p - c)) >= 0 && n.lengthSqr() > 0;
+  if (is_over) return std::pow(n.dot(p - a), 2) / n.lengthSqr();
+  return std::min({(p - nearest_on_segment(p, a, b)).lengthSqr(), (p - nearest_on_segment(p, b, c)).lengthSqr(),
+                   (p - nearest_on_segment(p, c, a)).lengthSqr()});
 }
 
 /// Distance in voxels, negative inside by the winding number.
-double exact(const TriangleSoup& soup, WorldPoint p, double voxel) {
+double exact(const TriangleSoup& soup, const Vec3d& p, double voxel) {
   double least_sq = INFINITY, angle = 0;
   for (const auto& t : soup.triangles) {
-    const WorldPoint &a = soup.vertices[t[0]], &b = soup.vertices[t[1]], &c = soup.vertices[t[2]];
-    least_sq = std::min(least_sq, nearest_of_triangle(p, a, b, c).distance_sq);
-    const WorldPoint u = a - p, v = b - p, w = c - p;
-    const double lu = length(u), lv = length(v), lw = length(w);
-    angle += 2 * std::atan2(dot(u, cross(v, w)), lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv);
+    const Vec3d a = vector_of(soup.vertices[t[0]]), b = vector_of(soup.vertices[t[1]]),
+                c = vector_of(soup.vertices[t[2]]), u = a - p, v = b - p, w = c - p;
+    least_sq = std::min(least_sq, distance_sq(p, a, b, c));
+    const double lu = u.length(), lv = v.length(), lw = w.length();
+    angle += 2 * std::atan2(u.dot(v.cross(w)), lu * lv * lw + u.dot(v) * lw + v.dot(w) * lu + w.dot(u) * lv);
   }
   const double distance = std::sqrt(least_sq) / voxel;
   return angle > 2 * M_PI ? -distance : distance;
@@ -91,27 +124,17 @@ struct Errors {
   }
 };
 
-WorldPoint centre_of(const LatticeFrame& f, Voxel v) {
-  return {f.origin.x + (v.x + .5) * f.voxel_size, f.origin.y + (v.y + .5) * f.voxel_size,
-          f.origin.z + (v.z + .5) * f.voxel_size};
-}
-
-/// In the lattice of a level set, whose voxel (0,0,0) is index (0,0,0).
-openvdb::FloatGrid::Ptr by_openvdb(const TriangleSoup& soup, const LatticeFrame& frame, const Arguments& args,
+openvdb::FloatGrid::Ptr by_openvdb(const TriangleSoup& soup, const openvdb::FloatGrid& ours, const Arguments& args,
                                    double& cpu_ms) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(args.threads));
   std::vector<openvdb::Vec3s> points;
-  for (const WorldPoint& p : soup.vertices)
-    points.emplace_back(float((p.x - frame.origin.x) / frame.voxel_size - .5),
-                        float((p.y - frame.origin.y) / frame.voxel_size - .5),
-                        float((p.z - frame.origin.z) / frame.voxel_size - .5));
+  for (const WorldPoint& p : soup.vertices) points.emplace_back(ours.worldToIndex(vector_of(p)));
   std::vector<openvdb::Vec3I> triangles;
   for (const auto& t : soup.triangles) triangles.emplace_back(t[0], t[1], t[2]);
   const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> mesh(points, triangles);
+  const auto band = float(args.band_vox);
   const double before_ms = cpu_now_ms();
-  const auto transform = openvdb::math::Transform::createLinearTransform(1);
-  auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(mesh, *transform, float(args.band_vox),
-                                                               float(args.band_vox),
+  auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(mesh, ours.transform(), band, band,
                                                                openvdb::tools::DISABLE_RENORMALIZATION);
   cpu_ms = cpu_now_ms() - before_ms;
   return grid;
@@ -120,43 +143,41 @@ openvdb::FloatGrid::Ptr by_openvdb(const TriangleSoup& soup, const LatticeFrame&
 }  // namespace
 
 int main(int argc, char** argv) try {
-    Arguments args;
-    const std::vector<std::string> names = bench::read_arguments(argc, argv, "bench_level_set WHOLE BROKEN", 2,
-                                                                 {{"--resolution", "R", &args.resolution},
-                                                                  {"--band", "D", &args.band_vox},
-                                                                  {"--threads", "T", &args.threads},
-                                                                  {"--samples", "N", &args.samples}});
-    openvdb::initialize();
-    const TriangleSoup whole_soup = read_mesh(names[0]), broken_soup = read_mesh(names[1]);
-    const Timed whole = level_set_of(whole_soup, args), broken = level_set_of(broken_soup, args);
-    const LatticeFrame& frame = whole.set.frame;
-    double openvdb_cpu_ms = 0;
-    const openvdb::FloatGrid::Ptr theirs = by_openvdb(whole_soup, frame, args, openvdb_cpu_ms);
+  Arguments args;
+  const std::vector<std::string> names = bench::read_arguments(argc, argv, "bench_level_set WHOLE BROKEN", 2,
+                                                               {{"--resolution", "R", &args.resolution},
+                                                                {"--band", "D", &args.band_vox},
+                                                                {"--threads", "T", &args.threads},
+                                                                {"--samples", "N", &args.samples}});
+  openvdb::initialize();
+  const TriangleSoup whole_soup = read_mesh(names[0]), broken_soup = read_mesh(names[1]);
+  const Timed whole = level_set_of(whole_soup, args), broken = level_set_of(broken_soup, args);
+  const openvdb::FloatGrid& grid = *whole.grid;
+  double openvdb_cpu_ms = 0;
+  const openvdb::FloatGrid::Ptr theirs = by_openvdb(whole_soup, grid, args, openvdb_cpu_ms);
 
-    Errors of_broken, ours, of_openvdb;
-    const VoxelSetView voxels = whole.set.voxels.view(), other = broken.set.voxels.view();
-    for (int64_t i = 0; i < whole.set.distance_vox.size(); ++i)
-      if (const int64_t j = find_voxel(other, voxel_of_index(voxels, i)); j >= 0)
-        of_broken.add(broken.set.distance_vox[j], whole.set.distance_vox[i]);
-    std::mt19937_64 random(1);
-    const auto values = theirs->getConstAccessor();
-    for (int32_t n = 0; n < args.samples; ++n) {
-      const auto i = int64_t(random() % uint64_t(whole.set.distance_vox.size()));
-      const Voxel v = voxel_of_index(voxels, i);
-      const double truth = exact(whole_soup, centre_of(frame, v), frame.voxel_size);
-      ours.add(whole.set.distance_vox[i], truth);
-      of_openvdb.add(values.getValue({v.x, v.y, v.z}), truth);
-    }
-    bench::print_result({{"resolution", args.resolution},
-                {"active", whole.set.distance_vox.size()},
-                {"active_openvdb", theirs->activeVoxelCount()},
-                {"broken_against_whole", of_broken.to_json()},
-                {"whole_against_exact", ours.to_json()},
-                {"openvdb_against_exact", of_openvdb.to_json()},
-                {"prepare_cpu_ms", broken.prepare_cpu_ms},
-                {"level_set_cpu_ms", broken.cpu_ms},
-                {"openvdb_cpu_ms", openvdb_cpu_ms}});
-    return 0;
+  Errors of_broken, ours, of_openvdb;
+  const double voxel = grid.voxelSize()[0];
+  const auto of_the_broken = broken.grid->getConstAccessor(), of_theirs = theirs->getConstAccessor();
+  std::mt19937_64 random(1);
+  for (auto value = grid.cbeginValueOn(); value; ++value) {
+    const openvdb::Coord at = value.getCoord();
+    if (of_the_broken.isValueOn(at)) of_broken.add(of_the_broken.getValue(at) / voxel, *value / voxel);
+    if (random() % grid.activeVoxelCount() >= uint64_t(args.samples)) continue;
+    const double truth = exact(whole_soup, grid.indexToWorld(at), voxel);
+    ours.add(*value / voxel, truth);
+    of_openvdb.add(of_theirs.getValue(at) / voxel, truth);
+  }
+  bench::print_result({{"resolution", args.resolution},
+                       {"active", grid.activeVoxelCount()},
+                       {"active_openvdb", theirs->activeVoxelCount()},
+                       {"broken_against_whole", of_broken.to_json()},
+                       {"whole_against_exact", ours.to_json()},
+                       {"openvdb_against_exact", of_openvdb.to_json()},
+                       {"prepare_cpu_ms", broken.prepare_cpu_ms},
+                       {"level_set_cpu_ms", broken.cpu_ms},
+                       {"openvdb_cpu_ms", openvdb_cpu_ms}});
+  return 0;
 } catch (const std::exception& error) {
   return bench::failed(argv[0], error);
 }

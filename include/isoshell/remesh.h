@@ -52,8 +52,8 @@ Prepared prepare(const TriangleMesh& mesh, const RemeshOptions& options, Context
 Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOptions& options, Context& context);
 
 /// Signed distances around the solid that a prepared surface's sheet bounds, less than so many voxels from it (see
-/// LevelSet). Exact to the input's own vertices where want_level_set has kept them, else to the nearest 1/256 voxel.
-/// Throws: usage where the surface parts regions, and for a band outside of 1 to kMaxLevelSetBandVox.
+/// LevelSet). Exact to the input's own vertices where level_set_band_vox has kept them, else to the nearest 1/256
+/// voxel. Throws: usage where the surface parts regions, and for a band outside of 1 to kMaxLevelSetBandVox.
 LevelSet level_set(const Prepared& prepared, double band_vox, Context& context);
 
 /// Seeds of a prepared surface, and what was measured up to there.

@@ -101,10 +101,10 @@ struct RemeshOptions : SizeOptions, GridOptions, RelaxationOptions, ShapeOptions
   /// Where the surface is another than before, or cannot be meshed from there, the run begins as without it, and
   /// vertices get the numbers of those that lie nearest.
   std::shared_ptr<const PreviousFrame> previous = {};
-  bool want_shell = false;      ///< build the shell even when the method does not need it, to keep it
-  bool want_level_set = false;  ///< keep the vertices that were snapped, for level_set()
-  bool want_samples = true;     ///< keep Prepared::samples() when the sheet is made, though it and no shell reads them
-  bool want_digests = false;    ///< fill RemeshReport::digests
+  bool want_shell = false;        ///< build the shell even when the method does not need it, to keep it
+  double level_set_band_vox = 0;  ///< above 0: keep the vertices that were snapped, for a level_set() of that band
+  bool want_samples = true;   ///< keep Prepared::samples() when the sheet is made, though it and no shell reads them
+  bool want_digests = false;  ///< fill RemeshReport::digests
 };
 
 }  // namespace isoshell

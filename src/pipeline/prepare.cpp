@@ -276,7 +276,7 @@ Prepared prepare(const TriangleSoup& given_soup, const RemeshOptions& requested,
   const TriangleSoup& meshed = input.soup(soup);
   const Plan plan = plan_of(options, input.topology, input.is_changed() ? bounding_box(meshed) : given.box);
   PreparedSurface p = GridSearch(meshed, plan, {&soup, input.interfaces}, run).best_grid();
-  if (options.want_level_set) p.exact = positions_and_triangles(meshed);
+  if (options.level_set_band_vox > 0) p.exact = positions_and_triangles(meshed);
   p.report.input = {measured.topology, measured.dirt, soup.far, input.repair, input.united};
   return held(std::move(p), run);
 }

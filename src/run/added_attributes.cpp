@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
@@ -13,7 +14,8 @@ namespace {
 constexpr const char* kBornName = "born";
 constexpr const char* kMotionNames[3] = {"vx", "vy", "vz"};
 constexpr const char* kColorGrids[] = {"Cd", kColorName};
-constexpr const char* kTakenNames[] = {"gap", "x", "y", "z"};  // by other numbers of a vertex in files
+constexpr const char* kTakenNames[] = {"gap", "x",  "y",  "z",
+                                       "vx",  "vy", "vz", "born"};  // by other numbers of a vertex in files
 
 bool is_name_of_motion(const Attribute& attribute) {
   const auto is_it = [&](const char* name) { return attribute.name == name; };
@@ -122,6 +124,7 @@ void add_grid_attributes(const Input& input, const std::string& format, Triangle
   const auto warn = [&](const std::string& text) {
     if (tell) tell(MessageKind::warning, input.facts.name() + ": grid " + text);
   };
+  std::set<std::string> placed;  // names that have a grid's values
   for (const auto& grid : *input.grids) {
     GridValues found = grid->at(mesh.vertices);
     std::vector<Attribute> attributes = attributes_of(std::move(found.values));
@@ -134,6 +137,12 @@ void add_grid_attributes(const Input& input, const std::string& format, Triangle
       warn(grid->name() + " has no active voxel at any vertex: all have its background; see where it stands");
     SampledGrid& added = report.grids.emplace_back(SampledGrid{grid->name(), {}, found.outside});
     for (Attribute& attribute : attributes) {
+      if (!placed.insert(attribute.name).second) {
+        warn(grid->name() + " is left out: another grid has the name " + attribute.name +
+             " already; ask for one of them");
+        report.dropped.push_back({attribute.name, "another grid than " + grid->name() + " has its place"});
+        continue;
+      }
       added.attributes.push_back(attribute.name);
       put(std::move(attribute), grid->name(), mesh, report);
     }

@@ -184,6 +184,10 @@ void check_request(const RunRequest& r) {
     refuse_use("--grids needs a mesh; leave out --stop-after");
   if (r.report == "-") refuse_use("--report cannot be written to standard output; name a file");
   possible_features(r.options.values, r);
+  if (!r.save_voronoi.empty() && (r.stop_after == StopAfter::shell || r.stop_after == StopAfter::level_set))
+    refuse_use("--save-voronoi needs seeds, which come after --stop-after; leave one of them out");
+  if ((!r.save_level_set.empty() || r.stop_after == StopAfter::level_set) && !r.options.values.regions.empty())
+    refuse_use("a level set is of one solid; leave out --regions, or the level set");
   check_one_to_pipe(outputs_of(r));
   const OutputRequest output = named_output(r.output.path, r.output.format, r.stop_after);  // may refuse it
   if (r.options.values.color_features && r.stop_after == StopAfter::mesh && !output.path.empty() &&

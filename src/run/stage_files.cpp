@@ -30,12 +30,6 @@ std::vector<std::string> level_set_files(const RunRequest& request) {
   return stage_files(request, request.save_level_set, StopAfter::level_set);
 }
 
-void write_level_set(const std::string& path, const Prepared& prepared, const RunRequest& request, Context& context) {
-  LevelSetWriteOptions options;
-  options.overwrite = request.overwrite;
-  save_level_set(path, level_set(prepared, request.level_set_band_vox, context), options);
-}
-
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite) {
   StageWriteOptions options;

@@ -20,8 +20,6 @@ std::string left_out_of_stage_files(const Input& input, const std::optional<std:
 std::vector<std::string> stage_files(const RunRequest& request, const std::string& saved, StopAfter stage);
 
 std::vector<std::string> level_set_files(const RunRequest& request);
-/// Makes the level set of a prepared surface and writes it. Throws: as level_set() and save_level_set() do.
-void write_level_set(const std::string& path, const Prepared& prepared, const RunRequest& request, Context& context);
 
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite);

@@ -47,7 +47,7 @@ class RunSteps::Run {
     record_.output.format = named_output(request_.output.path, request_.output.format, request_.stop_after).format;
     options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() ||
                                   request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::voronoi;
-    options_.values.want_level_set |= !level_set_files(request_).empty();
+    if (!level_set_files(request_).empty()) options_.values.level_set_band_vox = request_.level_set_band_vox;
     options_.values.want_digests |= measures_all(request_);
   }
 
@@ -119,8 +119,8 @@ class RunSteps::Run {
       warn(input_->facts.name() + ": the result is without " + left_out_ +
            ", and not cut along their seams: a stage file does not hold them; remesh the input itself to keep them");
     read_sizing_field();  // may be an attribute, whether it is kept or not
-    choose_attributes(*input_, options_.values.attributes, stops_early() ? "vdb" : record_.output.format, has_regions,
-                      record_.attributes, teller());
+    const std::string format = request_.stop_after == StopAfter::mesh ? record_.output.format : "vdb";
+    choose_attributes(*input_, options_.values.attributes, format, has_regions, record_.attributes, teller());
     // A Voronoi stage file does not hold the seeds of patches: then nothing is cut along seams.
     std::vector<Attribute> attributes;
     if (!request_.save_voronoi.empty()) attributes.swap(input_->soup.attributes);
@@ -152,11 +152,10 @@ class RunSteps::Run {
 
   RunResult finish(bool keeps_seeds) {
     if (is_over_) refuse_use("the run is over; begin another");
-    const Prepared& prepared = prepare();
+    prepare();
     for (const std::string& path : stage_files(request_, request_.save_shell, StopAfter::shell))
       save_shell(path, request_.overwrite);
-    for (const std::string& path : level_set_files(request_))
-      write_step("save-level-set", path, [&] { write_level_set(path, prepared, request_, *context_); });
+    save_level_sets(level_set_files(request_));
     if (request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::level_set) return result({});
     relax();
     const std::vector<std::string> voronoi = stage_files(request_, request_.save_voronoi, StopAfter::voronoi);
@@ -176,7 +175,9 @@ class RunSteps::Run {
     if (input_->grids)
       timed("sample", [&] { add_grid_attributes(*input_, record_.output.format, mesh, record_.attributes, teller()); });
     if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
-    if (options_.values.color_features) show_features(mesh);
+    if (options_.values.color_features && mesh.features.patch.empty())
+      warn("the result has no curves that colours could show");
+    if (options_.values.color_features) color_features(mesh, record_.attributes);
     if (const std::string& path = record_.output.path; !path.empty())
       write_step("write", path,
                  [&] { write_output(mesh, request_, options_.values.color_features, record_.files.front()); });
@@ -191,6 +192,15 @@ class RunSteps::Run {
     const Prepared& p = prepare();
     write_step("save-shell", path,
                [&] { isoshell::save_shell(path, p.surface(), p.samples(), p.shell(), stage_options(overwrite)); });
+  }
+
+  void save_level_sets(const std::vector<std::string>& paths) {
+    if (paths.empty()) return;
+    const LevelSet set =
+        timed("level-set", [&] { return to_host(level_set(*prepared_, request_.level_set_band_vox, *context_)); });
+    record_.level_set_voxels = set.voxels.voxel_count();
+    for (const std::string& path : paths)
+      write_step("save-level-set", path, [&] { save_level_set(path, set, {"surface", false, request_.overwrite}); });
   }
 
   void save_voronoi(const std::vector<std::string>& paths, bool overwrite) {
@@ -215,7 +225,6 @@ class RunSteps::Run {
   }
 
   const TriangleSoup& surface() const { return walls_ ? *walls_ : input_->soup; }
-  bool stops_early() const { return request_.stop_after != StopAfter::mesh; }
 
   template <class Work>
   std::invoke_result_t<Work> timed(const char* name, Work work) {
@@ -296,11 +305,6 @@ class RunSteps::Run {
   void measure(TriangleMesh& mesh, std::vector<WorldPoint>& exact) {
     const bool is_asked = request_.measures != Measures::none || measures_all(request_) || request_.gates.any();
     for (const std::string& text : measure_mesh(mesh, exact, is_asked, record_, *context_)) warn(text);
-  }
-
-  void show_features(TriangleMesh& mesh) {
-    if (mesh.features.patch.empty()) warn("the result has no curves that colours could show");
-    color_features(mesh, record_.attributes);
   }
 
   Tell teller() {

@@ -59,6 +59,17 @@ TEST_CASE("run: a level set is written on the way, or instead of a mesh, and mes
   const std::string again = "'" + command_path() + "' - again.ply --input-format vdb" + kQuick;
   REQUIRE(folder.run("ball.off - --stop-after level-set" + kQuick + "| " + again).status == 0);
   CHECK(folder.has("again.ply"));
+  REQUIRE(
+      folder.run("ball.off s.vdb --save-level-set t.vdb --stop-after level-set --level-set-band 4" + kQuick).status ==
+      0);
+  CHECK(folder.content("s.vdb") == folder.content("a.vdb"));
+  CHECK(folder.content("t.vdb") == folder.content("a.vdb"));
+  REQUIRE(folder.run("ball.off shell.vdb --stop-after shell" + kQuick).status == 0);
+  const auto resumed = folder.run("shell.vdb of_stage.vdb --stop-after level-set");
+  CHECK(resumed.status == 0);
+  CHECK_FALSE(contains(resumed.err, " 0 active voxels"));
+  CHECK(folder.run("ball.off - --output-format ply --save-level-set -" + kQuick).status == 2);
+  CHECK(folder.run("ball.off c.vdb --stop-after level-set --save-voronoi v.vdb" + kQuick).status == 2);
   CHECK(folder.run("ball.off c.vdb --stop-after level-set --level-set-band 0.5" + kQuick).status == 2);
   CHECK_FALSE(folder.has("c.vdb"));
   CHECK(folder.run("ball.off c.vdb --stop-after level-set --regions components" + kQuick).status == 2);

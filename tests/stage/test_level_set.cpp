@@ -24,7 +24,7 @@ RemeshOptions on_grid(int32_t resolution) {
   options.vertices = 500;
   options.resolution = resolution;
   options.features = {Features::Creases::off, 0};
-  options.want_level_set = true;
+  options.level_set_band_vox = 3;
   return options;
 }
 
@@ -145,6 +145,44 @@ TEST_CASE("level set: doubled walls and walls inside of a solid have no side of 
     if (std::abs(std::min(to_first, to_second)) > set.frame.voxel_size)
       REQUIRE((distance < 0) == (std::min(to_first, to_second) < 0));
   });
+}
+
+TEST_CASE("level set: a wide band of a ball with gaps that voxels bridge is that of the ball", "[level_set]") {
+  const TriangleSoup ball = shapes::sphere({0, 0, 0}, 5, 64);
+  TriangleSoup slit = ball;
+  slit.triangles.clear();
+  for (const auto& t : ball.triangles)  // a slit around the middle
+    if (std::abs(ball.vertices[t[0]].z) > .2 || std::abs(ball.vertices[t[1]].z) > .2) slit.triangles.push_back(t);
+  RemeshOptions options = on_grid(64);
+  options.closing_vox = 4;
+  TestContext context;
+  const LevelSet set = to_host(level_set(prepare(slit, options, context), 8, context));
+  for_each_nth(set, 1, [&](WorldPoint p, double distance) {
+    const double from_middle = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z) - 5;
+    if (std::abs(from_middle) > 2 * set.frame.voxel_size) REQUIRE((distance < 0) == (from_middle < 0));
+    REQUIRE(std::abs(distance) == Approx(std::abs(from_middle)).margin(2 * set.frame.voxel_size));
+  });
+  CHECK(jumps(set) == 0);
+}
+
+TEST_CASE("level set: a sheet without thickness has that of its crust", "[level_set]") {
+  TriangleSoup sheet;
+  for (uint32_t i = 0; i <= 20; ++i)
+    for (uint32_t j = 0; j <= 20; ++j) sheet.vertices.push_back({i * .1, j * .1, .2 * std::sin(i * .3)});
+  for (uint32_t i = 0; i < 20; ++i)
+    for (uint32_t j = 0; j < 20; ++j) {
+      const uint32_t a = i * 21 + j, b = a + 1, c = a + 21, d = c + 1;
+      sheet.triangles.push_back({a, c, b});
+      sheet.triangles.push_back({b, c, d});
+    }
+  const LevelSet set = level_set_of(sheet, 64);
+  int64_t inside = 0;
+  for_each_nth(set, 1, [&](WorldPoint p, double distance) {
+    inside += distance < 0 ? 1 : 0;
+    if (distance < 0) REQUIRE(distance_to(sheet, p) < 4 * set.frame.voxel_size);
+  });
+  CHECK(inside > 4000);
+  CHECK(jumps(set) <= set.distance_vox.size() / 10000);
 }
 
 TEST_CASE("level set: it has the same bytes for any number of threads and on a device", "[level_set]") {

@@ -21,7 +21,7 @@ LevelSet level_set_of(const TriangleSoup& soup, double band_vox) {
   options.vertices = 500;
   options.resolution = 64;
   options.features = {Features::Creases::off, 0};
-  options.want_level_set = true;
+  options.level_set_band_vox = 3;
   CpuContext context;
   return level_set(prepare(soup, options, context), band_vox, context);
 }

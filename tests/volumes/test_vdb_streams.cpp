@@ -43,8 +43,17 @@ openvdb::GridPtrVec many_grids() {
   auto mask = openvdb::MaskGrid::create();
   mask->setName("mask");
   mask->sparseFill(openvdb::CoordBBox(openvdb::Coord(-3), openvdb::Coord(40)), true);
-  return {grid_of<openvdb::BoolGrid>("flags", true), mask,  half, grid_of<openvdb::Int32Grid>("ids", 7), speed, same,
-          grid_of<openvdb::Int64Grid>("big", 8),     ball()};
+  const auto half_flags = grid_of<openvdb::BoolGrid>("half flags", true);
+  half_flags->setSaveFloatAsHalf(true);  // which is in the name of its type
+  return {grid_of<openvdb::BoolGrid>("flags", true),
+          half_flags,
+          mask,
+          half,
+          grid_of<openvdb::Int32Grid>("ids", 7),
+          speed,
+          same,
+          grid_of<openvdb::Int64Grid>("big", 8),
+          ball()};
 }
 
 std::string stream_of(const openvdb::GridPtrVec& grids, uint32_t compression) {

@@ -124,8 +124,10 @@ CommandOption of_run(const OptionRow& row) {
           row.instead_of};
 }
 
-std::vector<CommandOption> file_options() {
-  const char* group = "Files";
+constexpr char kFiles[] = "Files";
+
+std::vector<CommandOption> input_options() {
+  const char* group = kFiles;
   return {
       {{group, "iso", "V", "isovalue of a volume; required for a fog volume",
         "0 in a level set and in unsigned distances", true},
@@ -155,6 +157,12 @@ std::vector<CommandOption> file_options() {
        set_grids},
       {{group, "input-format", "F", "format of INPUT: " + listed_formats(reads_anything), "by its name"},
        [](const std::string& text, Arguments& a) { a.run.input.format = text; }},
+  };
+}
+
+std::vector<CommandOption> output_options() {
+  const char* group = kFiles;
+  return {
       {{group, "output-format", "F", "format of OUTPUT: " + listed_formats(writes_mesh, ", ") + " or vdb",
         "by its name"},
        [](const std::string& text, Arguments& a) { a.run.output.format = text; }},
@@ -243,7 +251,8 @@ std::vector<CommandOption> process_options() {
 std::vector<CommandOption> command_options() {
   std::vector<CommandOption> all;
   for (const OptionRow& row : option_rows()) all.push_back(of_run(row));
-  for (const std::vector<CommandOption>& part : {file_options(), sequence_options(), process_options()})
+  for (const std::vector<CommandOption>& part :
+       {input_options(), output_options(), sequence_options(), process_options()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

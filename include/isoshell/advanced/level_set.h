@@ -34,15 +34,22 @@ struct LevelSetOptions {
   int32_t closing_vox = 0;  ///< that the sheet was made with
 };
 
-/// The surface of a level set: the input's triangles, and where the sheet bridges gaps its own. `exact` are the
-/// vertices and triangles that were snapped; without it the snapped positions count. Where the sheet bounds more than
-/// the sites do, as around surfaces without thickness, it is the surface by itself (`only_sheet`). On the host.
-LevelSetSurface level_set_surface(const LatticeSurface& surface, const TriangleSoup* exact, const Sheet& sheet,
-                                  bool only_sheet, Context& context);
+/// Whether the sheet is part of the surface.
+enum class SheetPart {
+  none,    ///< the input's triangles close it
+  beside,  ///< it spans gaps, and follows the input elsewhere to within what its triangles cut off
+  alone,   ///< it bounds more than the sites do, as around surfaces without thickness
+};
 
-/// Measures and signs the band. Distances are minima over all triangles that count, computed in doubles in a fixed
-/// order, so they are the same for any number of threads. Cost: O(triangles * voxels that they reach), some 50 bytes a
-/// voxel of the band. Throws: usage for a band outside of its range; interrupted.
+/// The surface of a level set. `exact` are the vertices and triangles that were snapped; without it the snapped
+/// positions count. On the host.
+LevelSetSurface level_set_surface(const LatticeSurface& surface, const TriangleSoup* exact, const Sheet& sheet,
+                                  SheetPart part);
+
+/// Measures and signs the band. Each distance is the least over all triangles, by the same operations on doubles, so
+/// that the order in which they are looked at does not matter. Cost: O(triangles * leaves that they reach + voxels *
+/// triangles that may be nearest); some 40 bytes a voxel within half a voxel more than the band, 150 a triangle.
+/// Throws: usage for a band outside of its range; interrupted.
 LevelSet build_level_set(const LevelSetSurface& surface, const SiteSet& sites, const Sheet& sheet,
                          const LevelSetOptions& options, Context& context);
 

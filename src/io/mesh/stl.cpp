@@ -1,7 +1,9 @@
 // STL, binary and text. Normals are passed over; corners are welded by position. The solids of a text file are groups.
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "geometry/world_vector.h"
 #include "io/bytes/byte_order.h"
@@ -194,17 +196,26 @@ std::vector<std::string> number_solids(const MeshSource& source, std::vector<Tex
   std::unordered_map<std::string_view, double> number = {{"", -1}};
   double now = -1;
   bool has_unnamed = false;
+  const auto begin = [&](std::string_view name) {
+    const auto [at, is_new] = number.emplace(name, double(names.size()));
+    if (is_new) {
+      source.take(kBytesPerName + 4 * int64_t(name.size()));
+      names.emplace_back(name);
+    }
+    has_unnamed |= name.empty();
+    return now = at->second;
+  };
+  std::optional<std::string_view> waiting;  // for a facet, wherever the chunk ends
   for (TextFacets& part : parts) {
+    const bool goes_on = !part.corner_counts.empty() && (part.solids.empty() || part.solids.front().facet > 0);
+    if (goes_on && waiting) begin(*std::exchange(waiting, {}));
     part.number_before = now;
     for (SolidStart& solid : part.solids) {
-      if (&part == &parts.back() && solid.facet == part.corner_counts.size()) break;  // no facet follows it
-      const auto [at, is_new] = number.emplace(solid.name, double(names.size()));
-      if (is_new) {
-        source.take(kBytesPerName + 4 * int64_t(solid.name.size()));
-        names.emplace_back(solid.name);
-      }
-      now = solid.number = at->second;
-      has_unnamed |= solid.name.empty();
+      waiting.reset();
+      if (solid.facet == part.corner_counts.size())
+        waiting = solid.name;
+      else
+        solid.number = begin(solid.name);
     }
   }
   if (names.size() + size_t(has_unnamed) < 2) names.clear();

@@ -26,31 +26,31 @@ constexpr int kAllValues = 6;
 struct ValueType {
   const char* name;
   int64_t bytes;
-  int64_t half_bytes;  // in a grid saved as half
+  int64_t half_bytes;     // in a grid saved as half
+  int masks_of_leaf = 0;  // in place of values: which voxels are active, and for bool a second one, which are true
 };
-constexpr ValueType kTypes[] = {{"Tree_float_5_4_3", 4, 2},   {"Tree_double_5_4_3", 8, 2}, {"Tree_int32_5_4_3", 4, 4},
-                                {"Tree_int64_5_4_3", 8, 8},   {"Tree_vec3s_5_4_3", 12, 6}, {"Tree_vec3d_5_4_3", 24, 6},
-                                {"Tree_vec3i_5_4_3", 12, 12}, {"Tree_bool_5_4_3", 1, 1},   {"Tree_mask_5_4_3", 1, 1}};
+constexpr ValueType kTypes[] = {
+    {"Tree_float_5_4_3", 4, 2},   {"Tree_double_5_4_3", 8, 2},  {"Tree_int32_5_4_3", 4, 4},
+    {"Tree_int64_5_4_3", 8, 8},   {"Tree_vec3s_5_4_3", 12, 6},  {"Tree_vec3d_5_4_3", 24, 6},
+    {"Tree_vec3i_5_4_3", 12, 12}, {"Tree_bool_5_4_3", 1, 1, 2}, {"Tree_mask_5_4_3", 1, 1, 1}};
 constexpr char kHalfSuffix[] = "_HalfFloat";
-
-/// Leaves of these hold masks: which voxels are active, and for bool a second one, which values are true.
-int masks_of_leaf(const std::string& type) { return type == "Tree_bool_5_4_3" ? 2 : type == "Tree_mask_5_4_3" ? 1 : 0; }
 
 class TreeWalk {
  public:
   TreeWalk(const std::string& path, View<const char> bytes, const VdbGridSpan& grid)
-      : in_(path, {bytes.data, grid.end}, grid.transform),
-        is_instance_(grid.instance),
-        compression_(grid.compression),
-        masks_of_leaf_(masks_of_leaf(grid.type)) {
+      : in_(path, {bytes.data, grid.end}, grid.transform), is_instance_(grid.instance), compression_(grid.compression) {
     for (const ValueType& type : kTypes) {
-      if (grid.type == type.name) value_bytes_ = stored_bytes_ = type.bytes;
-      if (grid.type == std::string(type.name) + kHalfSuffix) value_bytes_ = type.bytes, stored_bytes_ = type.half_bytes;
+      const bool is_half = grid.type == std::string(type.name) + kHalfSuffix;
+      if (grid.type != type.name && !is_half) continue;
+      value_bytes_ = type.bytes;
+      stored_bytes_ = is_half ? type.half_bytes : type.bytes;
+      masks_of_leaf_ = type.masks_of_leaf;
     }
     if (value_bytes_ == 0 && !is_instance_)
-      throw_unreadable_vdb(path, "grid \"" + grid.name + "\" is of type " + grid.type +
-                                     ", and nothing tells where such a grid ends in a stream; leave it out, or write a "
-                                     "file, which has offsets");
+      throw_unreadable_vdb(path,
+                           "grid \"" + grid.name + "\" is of type " + grid.type +
+                               ", which is not read; in a stream nothing tells where it ends: leave it out, or write "
+                               "a file, which has offsets");
     if (compression_ > (kZip | kActiveMask | kBlosc)) in_.fail("unknown compression " + std::to_string(compression_));
   }
 
@@ -158,7 +158,7 @@ class TreeWalk {
   VdbCursor in_;
   bool is_instance_;
   uint32_t compression_;
-  int masks_of_leaf_;
+  int masks_of_leaf_ = 0;
   int64_t value_bytes_ = 0, stored_bytes_ = 0, leaves_ = 0, lowers_ = 0, uppers_ = 0;
 };
 

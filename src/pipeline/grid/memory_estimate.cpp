@@ -17,7 +17,8 @@ constexpr double kBytesPerActiveVoxel = 14;
 constexpr double kBytesPerKeptVoxel = 80;  // of a shell that is kept to be written: OpenVDB's grids beside ours
 constexpr double kBytesPerTriangle = 150;  // soup, surface, welding and edge keys
 constexpr double kBytesPerSeed = 1000;
-constexpr double kFixedBytes = 64 << 20;  // lookup tables, thread-local scratch
+constexpr double kBytesPerSignedVoxel = 20;  // of a level set, beside what the sheet has taken
+constexpr double kFixedBytes = 64 << 20;     // lookup tables, thread-local scratch
 
 }  // namespace
 
@@ -36,12 +37,15 @@ RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t re
   const double sites = std::min(kSitesPerArea * area_vox + double(e.resolution), box_vox);
   const bool shell = options.want_shell || options.method == Method::shell;
   const double active = shell ? std::min(area_vox * (2 * options.band_vox + 1.74), box_vox) : 0;
+  const double band = options.level_set_band_vox;
+  const double signed_voxels = band > 0 ? std::min(area_vox * (2 * band + 2.74), box_vox) : 0;
   e.sites = int64_t(sites);
   e.sheet_vertices = input.closed ? int64_t(sites) : int64_t(2 * sites);
   e.active_voxels = int64_t(active);
   e.vertex_bytes = int64_t(kBytesPerSeed * double(e.vertices));
   e.bytes = e.vertex_bytes + int64_t(kFixedBytes + kBytesPerSheetVertex * double(e.sheet_vertices) +
                                      (options.want_shell ? kBytesPerKeptVoxel : kBytesPerActiveVoxel) * active +
+                                     kBytesPerSignedVoxel * signed_voxels +
                                      kBytesPerTriangle * double(soup.triangles.size() + soup.vertices.size()));
   return e;
 }

@@ -26,15 +26,10 @@ struct ToVoxels {
   }
 };
 
-bool bridges(const Sheet& sheet, const TriangleIndices& t) {
-  const auto is_off = [&](uint32_t v) { return sheet.source_triangle[v] == kNone; };
-  return is_off(t.a) || is_off(t.b) || is_off(t.c);
-}
-
 }  // namespace
 
 LevelSetSurface level_set_surface(const LatticeSurface& surface_anywhere, const TriangleSoup* exact,
-                                  const Sheet& sheet_anywhere, bool only_sheet, Context&) {
+                                  const Sheet& sheet_anywhere, SheetPart part) {
   const OnHost<LatticeSurface> surface_here(surface_anywhere);
   const OnHost<Sheet> sheet_here(sheet_anywhere);
   const LatticeSurface& surface = *surface_here;
@@ -44,7 +39,7 @@ LevelSetSurface level_set_surface(const LatticeSurface& surface_anywhere, const 
   const auto add = [&](const auto& positions, uint32_t a, uint32_t b, uint32_t c) {
     for (const uint32_t v : {a, b, c}) corner.push_back(to_voxels(positions[v]));
   };
-  if (!only_sheet) {
+  if (part != SheetPart::alone) {
     corner.reserve(size_t(3 * surface.triangles.size()));
     for (int64_t i = 0; i < surface.triangles.size(); ++i) {
       const TriangleIndices t = surface.triangles[i];
@@ -58,9 +53,8 @@ LevelSetSurface level_set_surface(const LatticeSurface& surface_anywhere, const 
   }
   LevelSetSurface made;
   made.first_of_sheet = int64_t(corner.size() / 3);
-  for (int64_t i = 0; i < sheet.triangles.size(); ++i)
-    if (const TriangleIndices t = sheet.triangles[i]; only_sheet || bridges(sheet, t))
-      add(sheet.position, t.a, t.b, t.c);
+  for (int64_t i = 0; i < sheet.triangles.size() && part != SheetPart::none; ++i)
+    add(sheet.position, sheet.triangles[i].a, sheet.triangles[i].b, sheet.triangles[i].c);
   made.corner = buffer_of(corner);
   return made;
 }

@@ -99,11 +99,10 @@ LevelSet build_level_set_body(Exec& exec, View<const WorldPoint> triangle_corner
   const VoxelSetView candidates = candidate_set.view(), near_view = near_sheet.voxels.view();
 
   Buffer<Sphere> sphere = exec.template make<Sphere>(triangle_corner.size / 3);
-  exec.for_each("spheres", sphere.size(), FindSphere{triangle_corner, sphere.view()});
-  const Triangles triangles{triangle_corner, sphere.view(), first_of_sheet, near_view};
+  exec.for_each("spheres", sphere.size(), FindSphere{triangle_corner, first_of_sheet, near_view, sphere.view()});
+  const Triangles triangles{triangle_corner, sphere.view(), near_view};
   Lists lists = list_triangles(exec, {triangles, candidates, options.band_vox});
   Buffer<float> distance = exec.template make<float>(candidate_set.voxel_count());
-  exec.fill(distance.view(), float(options.band_vox));
   Buffer<LeafMask> active = exec.template make<LeafMask>(candidate_set.leaf_count());
   exec.for_each("measure leaves", candidate_set.leaf_count(),
                 MeasureLeaf{triangles, candidates, options.band_vox, lists.first.view(), lists.triangle.view(),

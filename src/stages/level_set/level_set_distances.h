@@ -14,6 +14,7 @@ ISOSHELL_HD inline WorldPoint centre_of(Voxel v) { return {v.x + 0.5, v.y + 0.5,
 struct Sphere {
   WorldPoint middle;
   double radius;
+  bool counts_whole;  ///< all points of the triangle count
 
   ISOSHELL_HD bool is_within(WorldPoint p, double distance) const {
     const WorldPoint away = p - middle;
@@ -24,16 +25,33 @@ struct Sphere {
 
 struct FindSphere {
   View<const WorldPoint> corner;
+  int64_t first_of_sheet;
+  VoxelSetView near_sheet;
   View<Sphere> sphere;
   ISOSHELL_HD void operator()(int64_t t) const {
     using triangle_search::larger;
     using triangle_search::smaller;
     const WorldPoint a = corner[3 * t], b = corner[3 * t + 1], c = corner[3 * t + 2];
-    const auto middle = [](double p, double q, double r) {
-      return (smaller(smaller(p, q), r) + larger(larger(p, q), r)) / 2;
-    };
-    const WorldPoint at{middle(a.x, b.x, c.x), middle(a.y, b.y, c.y), middle(a.z, b.z, c.z)};
-    sphere[t] = {at, larger(larger(length(a - at), length(b - at)), length(c - at)) + 1e-6};
+    const WorldPoint low{smaller(smaller(a.x, b.x), c.x), smaller(smaller(a.y, b.y), c.y),
+                         smaller(smaller(a.z, b.z), c.z)};
+    const WorldPoint high{larger(larger(a.x, b.x), c.x), larger(larger(a.y, b.y), c.y), larger(larger(a.z, b.z), c.z)};
+    const WorldPoint at = 0.5 * (low + high);
+    const double radius = larger(larger(length(a - at), length(b - at)), length(c - at)) + 1e-6;
+    sphere[t] = {at, radius, t >= first_of_sheet || is_near(low, high)};
+  }
+
+ private:
+  /// Whether all voxels of a small box are near the sheet.
+  ISOSHELL_HD bool is_near(WorldPoint low, WorldPoint high) const {
+    constexpr int64_t kMostVoxels = 512;  // few triangles with larger boxes are in one leaf
+    const Voxel first{int32_t(low.x), int32_t(low.y), int32_t(low.z)},
+        last{int32_t(high.x), int32_t(high.y), int32_t(high.z)};
+    if (int64_t(last.x - first.x + 1) * (last.y - first.y + 1) * (last.z - first.z + 1) > kMostVoxels) return false;
+    for (int32_t x = first.x; x <= last.x; ++x)
+      for (int32_t y = first.y; y <= last.y; ++y)
+        for (int32_t z = first.z; z <= last.z; ++z)
+          if (find_voxel(near_sheet, {x, y, z}) < 0) return false;
+    return true;
   }
 };
 
@@ -41,7 +59,6 @@ struct FindSphere {
 struct Triangles {
   View<const WorldPoint> corner;  ///< see LevelSetSurface
   View<const Sphere> sphere;
-  int64_t first_of_sheet;
   VoxelSetView near_sheet;
 
   ISOSHELL_HD int64_t count() const { return corner.size / 3; }
@@ -51,7 +68,7 @@ struct Triangles {
     return nearest_of_triangle(p, c[0], c[1], c[2]);
   }
   ISOSHELL_HD bool counts(int64_t t, WorldPoint at) const {
-    return t >= first_of_sheet || find_voxel(near_sheet, {int32_t(at.x), int32_t(at.y), int32_t(at.z)}) >= 0;
+    return sphere[t].counts_whole || find_voxel(near_sheet, {int32_t(at.x), int32_t(at.y), int32_t(at.z)}) >= 0;
   }
   ISOSHELL_HD bool counts(int64_t t, const MeshPoint& place) const {
     const WorldPoint* const c = of(t);
@@ -84,14 +101,34 @@ struct LeavesOfTriangle {
     const Voxel lo{first(a.x, b.x, d.x), first(a.y, b.y, d.y), first(a.z, b.z, d.z)};
     const Voxel hi{last(a.x, b.x, d.x, dims[0]), last(a.y, b.y, d.y, dims[1]), last(a.z, b.z, d.z, dims[2])};
     const double reach = band_vox + radius_of_cube(8);
-    for (int32_t x = lo.x; x <= hi.x; ++x)
-      for (int32_t y = lo.y; y <= hi.y; ++y)
-        for (int32_t z = lo.z; z <= hi.z; ++z) {
-          const uint32_t leaf = find_leaf(leaves, {x, y, z});
-          if (leaf == kNone) continue;
-          const WorldPoint middle{8 * x + 4.0, 8 * y + 4.0, 8 * z + 4.0};
-          if (triangles.nearest(middle, t).distance_sq <= reach * reach) visit(leaf);
-        }
+    const auto is_near = [&](Voxel cube, int side, double within) {
+      const double half = side / 2.0;
+      const WorldPoint middle{side * cube.x + half, side * cube.y + half, side * cube.z + half};
+      return triangles.nearest(middle, t).distance_sq <= within * within;
+    };
+    // By blocks of leaves: the box of a large triangle is mostly empty.
+    for_each_cube({lo.x >> 4, lo.y >> 4, lo.z >> 4}, {hi.x >> 4, hi.y >> 4, hi.z >> 4}, [&](Voxel block) {
+      const int64_t number = (int64_t(block.x) * dims[1] + block.y) * dims[2] + block.z;
+      if (leaves.block_table[number] == kNone || !is_near(block, 128, band_vox + radius_of_cube(128))) return;
+      const Voxel first_leaf{block.x * 16, block.y * 16, block.z * 16};
+      for_each_cube({larger_of(lo.x, first_leaf.x), larger_of(lo.y, first_leaf.y), larger_of(lo.z, first_leaf.z)},
+                    {smaller_of(hi.x, first_leaf.x + 15), smaller_of(hi.y, first_leaf.y + 15),
+                     smaller_of(hi.z, first_leaf.z + 15)},
+                    [&](Voxel at) {
+                      const uint32_t leaf = find_leaf(leaves, at);
+                      if (leaf != kNone && is_near(at, 8, reach)) visit(leaf);
+                    });
+    });
+  }
+
+ private:
+  ISOSHELL_HD static int32_t smaller_of(int32_t a, int32_t b) { return a < b ? a : b; }
+  ISOSHELL_HD static int32_t larger_of(int32_t a, int32_t b) { return a > b ? a : b; }
+  template <class Visit>
+  ISOSHELL_HD static void for_each_cube(Voxel from, Voxel to, Visit visit) {
+    for (int32_t x = from.x; x <= to.x; ++x)
+      for (int32_t y = from.y; y <= to.y; ++y)
+        for (int32_t z = from.z; z <= to.z; ++z) visit(Voxel{x, y, z});
   }
 };
 
@@ -140,8 +177,8 @@ struct MeasureLeaf {
   }
 
  private:
-  /// Brings the triangles that may be nearest to a voxel of the cube to the front, the nearest one first, and returns
-  /// their number.
+  /// Brings the triangles that may be nearest to a voxel of the cube to the front, one that is near first, and returns
+  /// their number. Only a triangle that counts as a whole tells how near the nearest one is at all of them.
   ISOSHELL_HD int64_t keep_near(View<uint32_t> list, int64_t count, Voxel origin, Voxel at, int side) const {
     const double half = side / 2.0, radius = radius_of_cube(side);
     const WorldPoint middle{origin.x + at.x + half, origin.y + at.y + half, origin.z + at.z + half};
@@ -151,7 +188,7 @@ struct MeasureLeaf {
       if (!triangles.sphere[list[i]].is_within(middle, farthest)) continue;
       swap(list[kept], list[i]);
       const MeshPoint place = nearest_within(middle, list[kept], least);
-      if (place.distance_sq < least * least && triangles.counts(list[kept], place)) {
+      if (place.distance_sq < least * least && triangles.sphere[list[kept]].counts_whole) {
         least = std::sqrt(place.distance_sq);
         farthest = triangle_search::smaller(farthest, least + 2 * radius);
         swap(list[0], list[kept]);
