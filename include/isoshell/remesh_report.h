@@ -67,8 +67,9 @@ struct InputReport {
 struct GridReport {
   LatticeFrame frame;
   int32_t band_vox = 0, closing_vox = 0, grown_vox = 0;
-  int64_t sites = 0, leaves = 0, active_voxels = 0;  ///< leaves and active voxels of the shell, 0 when it was not built
-  int64_t memory_estimate_bytes = 0;                 ///< of the largest grid that was tried; see memory_estimate.h
+  /// Leaves and active voxels of the shell, 0 when it was not built; active ones of the level set that a run ends with.
+  int64_t sites = 0, leaves = 0, active_voxels = 0;
+  int64_t memory_estimate_bytes = 0;  ///< of the largest grid that was tried; see memory_estimate.h
 };
 
 /// The closed surface that seeds move on.

@@ -114,7 +114,6 @@ Json grid_json(const GridReport& r) {
 Json counts_json(const RunRecord& r) {
   return {{"sites", r.report.grid.sites},
           {"active_voxels", r.report.grid.active_voxels > 0 ? Json(r.report.grid.active_voxels) : Json()},
-          {"level_set_voxels", r.level_set_voxels >= 0 ? Json(r.level_set_voxels) : Json()},
           {"leaves", r.report.grid.leaves > 0 ? Json(r.report.grid.leaves) : Json()},
           {"asked", r.report.count.asked ? Json(*r.report.count.asked) : Json()},
           {"sheet_vertices", r.report.sheet.vertices},

@@ -198,7 +198,7 @@ class RunSteps::Run {
     if (paths.empty()) return;
     const LevelSet set =
         timed("level-set", [&] { return to_host(level_set(*prepared_, request_.level_set_band_vox, *context_)); });
-    record_.level_set_voxels = set.voxels.voxel_count();
+    if (request_.stop_after == StopAfter::level_set) record_.report.grid.active_voxels = set.voxels.voxel_count();
     for (const std::string& path : paths)
       write_step("save-level-set", path, [&] { save_level_set(path, set, {"surface", false, request_.overwrite}); });
   }

@@ -90,10 +90,10 @@ TEST_CASE("mesh info: a cloud is measured from its points to the mesh, whatever 
   const auto info = info_of(folder, "open.off --ref cloud.xyz");
   CHECK(info["reference"]["kind"] == "points");
   CHECK(info["reference"]["vertices"] == 4);
-  const auto distance = info["distance"];
+  const auto& distance = info["distance"];
   CHECK(distance["to_reference"].is_null());
   CHECK(distance["hausdorff"].is_null());
-  const auto from = distance["from_reference"];
+  const auto& from = distance["from_reference"];
   CHECK(from["max"].get<double>() == Approx(3));
   CHECK(from["max_at_most"] == from["max"]);
   CHECK(from["mean"].get<double>() == Approx(.75));

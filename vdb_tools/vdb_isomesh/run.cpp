@@ -75,9 +75,7 @@ void tell_result(const RunRecord& record, Console& console) {
   if (record.vertices >= 0)
     text << counted(record.vertices, "vertex", "vertices") << ", " << counted(record.triangles, "triangle") << ", ";
   else
-    text << counted(record.level_set_voxels >= 0 ? record.level_set_voxels : record.report.grid.active_voxels,
-                    "active voxel")
-         << ", ";
+    text << counted(record.report.grid.active_voxels, "active voxel") << ", ";
   if (record.regions) {
     text << counted(int64_t(record.regions->regions.size()), "region")
          << (record.regions->every_region_closed ? ", " : ", not all of them closed, ");

@@ -72,7 +72,6 @@ struct RunRecord {
   std::optional<MeshDistance> distance;   ///< of the result and the input, as repaired
   std::optional<BorderMeasures> borders;  ///< the same, of a run that kept borders
   int64_t vertices = -1, triangles = -1;  ///< of the result; -1 when the run stopped before it
-  int64_t level_set_voxels = -1;          ///< active ones; -1 when none was made
   AttributeReport attributes;
   int64_t risky_sites = -1;      ///< with two walls in one voxel; -1: not counted
   std::vector<StageTime> times;  ///< of the steps around the stages, whose own are in the report
