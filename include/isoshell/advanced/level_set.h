@@ -18,10 +18,11 @@ struct LevelSetSurface {
 };
 
 /// Result: active are the voxels whose centres are less than `band_vox` from the surface, and each holds its distance,
-/// negative inside. Of the input's triangles only what lies near the sheet counts, within the closing and two voxels of
-/// a boundary face of its solid: inner walls have no distances. Outside is what is not in the solid, and each voxel of
-/// the solid that a path along the lattice joins with the outside sooner than with the inside, without meeting a
-/// triangle. So soups and scans with holes have a sign, and where faces are flipped or doubled it is the same.
+/// negative inside. Of the input's triangles only what lies near the sheet counts, within one voxel more than the
+/// closing, at least two, of a voxel with a boundary face of its solid: inner walls have no distances. Voxels that are
+/// clear of the surface have the side that the solid says. Each of the others has that of the one from which the fewest
+/// steps along the lattice lead there without meeting a triangle; where more than a few are needed, what the solid
+/// says. So soups and scans with holes have a sign, and where faces are flipped or doubled it is the same.
 struct LevelSet {
   LatticeFrame frame;
   VoxelSet voxels;

@@ -2,10 +2,9 @@
 #include "isoshell/advanced/level_set.h"
 
 #include <string>
-#include <vector>
 
 #include "core/copy_product.h"
-#include "core/vector_view.h"
+#include "core/parallel_ranges.h"
 #include "isoshell/error.h"
 #include "stages/backend_table.h"
 
@@ -35,27 +34,23 @@ LevelSetSurface level_set_surface(const LatticeSurface& surface_anywhere, const 
   const LatticeSurface& surface = *surface_here;
   const Sheet& sheet = *sheet_here;
   const ToVoxels to_voxels{sheet.frame};
-  std::vector<WorldPoint> corner;
-  const auto add = [&](const auto& positions, uint32_t a, uint32_t b, uint32_t c) {
-    for (const uint32_t v : {a, b, c}) corner.push_back(to_voxels(positions[v]));
+  const int64_t of_input = part == SheetPart::alone ? 0 : surface.triangles.size(),
+                of_sheet = part == SheetPart::none ? 0 : sheet.triangles.size();
+  LevelSetSurface made{Buffer<WorldPoint>(3 * (of_input + of_sheet)), of_input};
+  const auto put = [&](int64_t triangle, const auto& positions, uint32_t a, uint32_t b, uint32_t c) {
+    WorldPoint* const corner = made.corner.data() + 3 * triangle;
+    corner[0] = to_voxels(positions[a]), corner[1] = to_voxels(positions[b]), corner[2] = to_voxels(positions[c]);
   };
-  if (part != SheetPart::alone) {
-    corner.reserve(size_t(3 * surface.triangles.size()));
-    for (int64_t i = 0; i < surface.triangles.size(); ++i) {
-      const TriangleIndices t = surface.triangles[i];
-      if (!exact) {
-        add(surface.points, t.a, t.b, t.c);
-        continue;
-      }
-      const auto& source = exact->triangles[surface.source_face[i]];
-      add(exact->vertices, source[0], source[1], source[2]);
-    }
-  }
-  LevelSetSurface made;
-  made.first_of_sheet = int64_t(corner.size() / 3);
-  for (int64_t i = 0; i < sheet.triangles.size() && part != SheetPart::none; ++i)
-    add(sheet.position, sheet.triangles[i].a, sheet.triangles[i].b, sheet.triangles[i].c);
-  made.corner = buffer_of(corner);
+  for_each_index(int64_t(0), of_input, [&](int64_t i) {
+    const TriangleIndices t = surface.triangles[i];
+    if (!exact) return put(i, surface.points, t.a, t.b, t.c);
+    const auto& source = exact->triangles[surface.source_face[i]];
+    put(i, exact->vertices, source[0], source[1], source[2]);
+  });
+  for_each_index(int64_t(0), of_sheet, [&](int64_t i) {
+    const TriangleIndices t = sheet.triangles[i];
+    put(of_input + i, sheet.position, t.a, t.b, t.c);
+  });
   return made;
 }
 

@@ -89,13 +89,12 @@ LevelSet build_level_set_body(Exec& exec, View<const WorldPoint> triangle_corner
   SiteSet rim, near_sheet, holding;
   rim.voxels = rim_of(exec, faces, extent);
   near_sheet.voxels = Dilate::run(exec, rim, near_vox);
-  // Sites hold what counts of the input, and what is near the sheet holds the sheet, which counts where it bridges
-  // gaps.
-  const bool has_bridges = 3 * first_of_sheet < triangle_corner.size;
-  if (!has_bridges) holding.voxels = intersection(exec, sites.voxels.view(), near_sheet.voxels.view());
+  // Sites hold what counts of the input, and what is near the sheet holds the sheet, where that counts.
+  const bool sheet_counts = 3 * first_of_sheet < triangle_corner.size;
+  if (!sheet_counts) holding.voxels = intersection(exec, sites.voxels.view(), near_sheet.voxels.view());
   constexpr double kHalfDiagonal = 0.87;  // of a voxel, from whose centre the reach counts
   const VoxelSet candidate_set =
-      Dilate::run(exec, has_bridges ? near_sheet : holding, int32_t(std::ceil(options.band_vox + kHalfDiagonal)));
+      Dilate::run(exec, sheet_counts ? near_sheet : holding, int32_t(std::ceil(options.band_vox + kHalfDiagonal)));
   const VoxelSetView candidates = candidate_set.view(), near_view = near_sheet.voxels.view();
 
   Buffer<Sphere> sphere = exec.template make<Sphere>(triangle_corner.size / 3);
