@@ -134,7 +134,7 @@ inline std::vector<RunCase> run_cases() {
           {"patches of a thin wall are simplified", still([] { return bent_plate(1.5, 0.01); }), defaults(100)},
           {"patches of a thinner wall are simplified", still([] { return bent_plate(0.5, 0.004); }), defaults(100)},
           {"a wall too thin for its count loses its least creases", still([] { return bent_plate(0.5, 0.004); }),
-           defaults(30)},
+           defaults(20)},
           {"points without normals", points(points_of_torus(3000)), defaults(800)},
           {"points of a sharp body", points(points_of_box({30, 20, 10})), defaults(600)},
           {"grains of a volume of labels", labels(voronoi_grains(64, 20)), defaults(3000)},

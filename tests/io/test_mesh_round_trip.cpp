@@ -71,7 +71,7 @@ TEST_CASE("mesh files: OBJ, OFF and PLY bring every bit of a double back", "[mes
   }
 }
 
-TEST_CASE("mesh files: PLY is single precision exactly while no vertex moves a thousandth of the shortest edge",
+TEST_CASE("mesh files: PLY is single precision exactly while no vertex moves a thousandth of a triangle's least height",
           "[mesh_file][unit]") {
   const TemporaryFolder folder;
   TriangleMesh mesh = mesh_of(shapes::box({0, 0, 0}, {1, 1, 1}));
@@ -86,6 +86,13 @@ TEST_CASE("mesh files: PLY is single precision exactly while no vertex moves a t
   check_same(read_mesh(folder / "double.ply"), mesh);
   round_to_float(mesh);
   CHECK_FALSE(needs_double(mesh));
+  TriangleMesh thin = mesh_of(shapes::box({.1, .1, .1}, {1.1, 1.1, 1.1}));
+  thin.vertices.push_back({.6, .6, 1.1});
+  thin.triangles.push_back({4, 7, 8});  // on a diagonal but for its rounding
+  thin.vertices[8].x += 1e-3;
+  CHECK_FALSE(needs_double(thin));
+  thin.vertices[8].x -= .999e-3;  // edges are as long as before
+  CHECK(needs_double(thin));
   write_mesh(folder / "exact.ply", mesh);
   check_same(read_mesh(folder / "exact.ply"), mesh);
 }

@@ -135,6 +135,17 @@ int64_t FreeSeeds::fewest(const SeedSet& fixed) const {
   return count_places(fixed.fixed) + kFewestOfClosed * std::count(on_border.begin(), on_border.end(), 0);
 }
 
+double FreeSeeds::by_length(const SeedSet& fixed) const {
+  const EdgeLengths& lengths = cut_.surface.lengths;
+  const double e = lengths.at.empty() ? cut_.longest_edge_q8 : double(lengths.least);
+  const std::vector<double> border = on_border_by_length(fixed);
+  auto sum = double(count_places(fixed.fixed));
+  for (size_t p = 0; p < patches_.size(); ++p)
+    sum +=
+        std::max(0., double(patches_[p].share) / (std::sqrt(3.) * e * e) - border[p] / 2 + double(patches_[p].euler));
+  return sum;
+}
+
 int64_t FreeSeeds::closed_parts(const SeedSet& fixed) const {
   const Counts on_border = fixed_of(fixed);
   int64_t parts = 0;

@@ -24,6 +24,9 @@ class FreeSeeds {
   Counts counts(const SeedSet& fixed, int64_t vertices) const;
   /// Places that it takes at least.
   int64_t fewest(const SeedSet& fixed) const;
+  /// Places that lengths ask for: all fixed ones, and inside of each patch what its area leaves beside its border. More
+  /// than vertices_of_lengths says, where patches have more on their borders than that.
+  double by_length(const SeedSet& fixed) const;
   /// Closed patches without fixed seeds, and the handles of these.
   int64_t closed_parts(const SeedSet& fixed) const;
   /// As many as have the finer counts once there is a seed on each of their dual's edges, where `fixed` are those of

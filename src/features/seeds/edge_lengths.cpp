@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel_ranges.h"
 #include "features/seeds/length_limits.h"
@@ -113,7 +114,8 @@ void vary_edge_lengths(FineMesh& mesh, const VertexGraph& graph, const std::vect
     mesh.edge_length = graded(graph, limits, longest);
     const double reached = 1 / std::sqrt(vertices_of_lengths(mesh));
     if (std::abs(wanted / reached - 1) < kCloseEnough) return;
-    const double slope = reached != before_reached ? (longest - before) / (reached - before_reached) : 0;
+    constexpr double kSteep = std::numeric_limits<double>::infinity();  // limits decide up to a longer length
+    const double slope = reached != before_reached ? (longest - before) / (reached - before_reached) : kSteep;
     before = longest;
     before_reached = reached;
     longest *= std::clamp(1 + (wanted - reached) * slope / longest, kLeastStep, 1 / kLeastStep);

@@ -90,15 +90,18 @@ bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset) {
     const WorldPoint p = mesh.vertices[i] - offset;
     return scaled_sq(point_in_single(p), p);
   };
-  const auto shortest_edge_sq = [&](size_t i) {
+  const auto least_width_sq = [&](size_t i) {
     const auto& t = mesh.triangles[i];
     const WorldPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    return std::min({scaled_sq(a, b), scaled_sq(b, c), scaled_sq(c, a)});
+    const double edge_sq[] = {scaled_sq(a, b), scaled_sq(b, c), scaled_sq(c, a)};
+    const auto [least, most] = std::minmax_element(std::begin(edge_sq), std::end(edge_sq));
+    const double area_sq = length_sq(cross(scale * (b - a), scale * (c - a)));
+    return area_sq > 0 ? area_sq / *most : *least;
   };
   const double infinity = std::numeric_limits<double>::infinity();
   const double moved = joined_over(mesh.vertices.size(), 0.0, moved_sq, kLarger);
-  const double edge = joined_over(mesh.triangles.size(), infinity, shortest_edge_sq, kSmaller);
-  return moved * 1e6 > edge || count_lost_triangles(mesh, {NumberType::f32, offset}) > 0;
+  const double width = joined_over(mesh.triangles.size(), infinity, least_width_sq, kSmaller);
+  return moved * 1e6 > width || count_lost_triangles(mesh, {NumberType::f32, offset}) > 0;
 }
 
 Placement place_in_doubles(const TriangleMesh&, const WorldPoint& offset) { return {NumberType::f64, offset}; }

@@ -2,6 +2,7 @@
 #include "pipeline/patches/cut_curves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include "core/watched.h"
@@ -19,9 +20,11 @@
 namespace isoshell {
 namespace {
 
-constexpr double kMostOnCurves = 0.5;  ///< of the vertices, where creases are left out
-constexpr double kNearMost = 1.1;      ///< times as many are no reason to look again
-constexpr int kMostLooks = 3;          ///< for creases that fit; edges are shorter where curves face others, once cut
+constexpr double kMostOnCurves = 0.5;    ///< of the vertices, where creases are left out
+constexpr double kNearMost = 1.1;        ///< times as many are no reason to look again
+constexpr int kMostLooks = 3;            ///< for creases that fit; edges are shorter where curves face others, once cut
+constexpr double kMoreThanAsked = .04;   ///< vertices that lengths ask for, over those that there are
+constexpr double kFewestByLength = 0.4;  ///< of the vertices: edges are 1.6 times as long as without curves
 
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
 double six_volumes(const FeatureMesh& mesh) {
@@ -124,13 +127,32 @@ struct CutPlan {
   CutOptions how = {};
 };
 
+/// Lengths are such that triangles fill the area with the number of vertices, but corners and short curves between them
+/// may take more than that. Then all lengths are longer, as much as it takes for curves and the patches between them to
+/// share the vertices evenly. Throws: NoRoom where they would be too long.
+std::shared_ptr<CutSurface> cut_evenly(const CutPlan& plan, const CurveNetwork& network, Context& context) {
+  CutOptions how = plan.how;
+  for (int look = 1;; ++look) {
+    auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, how, context));
+    if (plan.how.vertices == 0) return cut;
+    cut->seeds = plan.how.vertices;
+    const double more = FreeSeeds(*cut).by_length(seeds_on_curves(*cut, 0)) - double(cut->seeds);
+    if (more <= kMoreThanAsked * double(cut->seeds) || look == kMostLooks) return cut;
+    how.vertices -= std::llround(more);
+    if (double(how.vertices) < kFewestByLength * double(cut->seeds))
+      throw NoRoom("features", "curves, and the patches between them, take more than " + std::to_string(cut->seeds) +
+                                   " vertices; use more vertices, or a higher angle from which on edges are features");
+    how.edge_length_world = edge_length_for(plan.mesh, network, how.vertices);
+  }
+}
+
 /// Throws: NoRoom where the network has no curve left: the mesh is made on the sheet then, and homes of seeds that were
 /// relaxed here would be no vertices of that.
 CutAlongCurves make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source, FeatureReport found,
                         Context& context) {
   if (network.curves.empty())
     throw NoRoom("features", "edges are too long for that; use more vertices, or a shorter edge length");
-  auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, plan.how, context));
+  const std::shared_ptr<CutSurface> cut = cut_evenly(plan, network, context);
   if (cut->seeds == 0) cut->seeds = plan.seeds;
   const SeedSet fixed = seeds_on_curves(*cut, 0);
   FreeSeeds(*cut).counts(fixed, cut->seeds);  // there is room
@@ -138,7 +160,7 @@ CutAlongCurves make_cut(const CutPlan& plan, const CurveNetwork& network, CutSou
   found.patches = int64_t(patch_count(*cut));
   found.given_up.clear();
   cut->source = std::make_shared<const CutSource>(std::move(source));
-  return {std::move(cut), std::move(found)};
+  return {cut, std::move(found)};
 }
 
 /// The same along as many creases as half of the vertices can hold, to within a tenth or as near as some looks come.
@@ -205,8 +227,8 @@ CutAlongCurves cut_network(const FeatureMesh& mesh, const CurveNetwork& network,
       return std::string();
     });
   };
-  const bool may_fit =
-      how.vertices == 0 || least_vertices_on(network, source.found, how.edge_length_world) <= double(seeds);
+  const double longest_world = how.edge_length_world / std::sqrt(kFewestByLength);
+  const bool may_fit = how.vertices == 0 || least_vertices_on(network, source.found, longest_world) <= double(seeds);
   if (may_fit) cut_along_all();
   if (!cut.surface && !how.before.empty()) {  // curves may keep more seeds than there is room for
     how.before.clear();
