@@ -1,8 +1,9 @@
-// All public headers.
+// All public headers, but isoshell/openvdb.h and isoshell/nanovdb.h, which include other libraries.
 #pragma once
 
 #include "isoshell/advanced/device_memory.h"
 #include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/each_voxel.h"
 #include "isoshell/advanced/own_thread.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/advanced/to_host.h"
@@ -16,6 +17,7 @@
 #include "isoshell/io/grid_field.h"
 #include "isoshell/io/input.h"
 #include "isoshell/io/label_file.h"
+#include "isoshell/io/memory_grid.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/mesh_view.h"
 #include "isoshell/io/output_files.h"

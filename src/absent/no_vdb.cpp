@@ -4,6 +4,7 @@
 #include "io/vdb/stage_reader.h"
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
+#include "isoshell/io/memory_grid.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/velocity_vdb.h"
@@ -52,6 +53,12 @@ std::shared_ptr<const SizingField> read_sizing(const std::string& source, int64_
   throw_without_openvdb(ErrorCode::unreadable_input, source);
 }
 std::shared_ptr<const SizingField> sizing_of(const DenseVolume&, const std::string& name) {
+  throw_without_openvdb(ErrorCode::unreadable_input, name);
+}
+Buffer<std::byte> nano_level_set(const LevelSet&, const std::string& name) {
+  throw_without_openvdb(ErrorCode::unwritable_output, name);
+}
+MemoryGrid sparse_grid(const SparseVolume&, const std::string& name, int64_t) {
   throw_without_openvdb(ErrorCode::unreadable_input, name);
 }
 std::shared_ptr<const VelocityField> read_velocity(const std::string& path, const std::string&, int64_t) {

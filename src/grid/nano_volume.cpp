@@ -150,6 +150,25 @@ NanoKind nano_kind(uint32_t grid_type, uint32_t grid_class) {
   return kind;
 }
 
+NanoHead nano_head_of(View<const std::byte> grid) {
+  constexpr char kMagic[] = "NanoVDB";  // one more character says whether it is a grid, or of an older version nothing
+  constexpr size_t kMagicBytes = sizeof kMagic - 1;
+  NanoHead head;
+  nanovdb::GridData data;
+  if (grid.size < int64_t(sizeof data) || std::memcmp(grid.data, kMagic, kMagicBytes) != 0) {
+    head.fault = "its " + std::to_string(grid.size) + " bytes do not begin with a grid's header";
+    return head;
+  }
+  std::memcpy(static_cast<void*>(&data), grid.data, sizeof data);
+  if (data.mVersion.getMajor() != nanovdb::Version().getMajor())
+    head.fault = "it has version " + std::to_string(data.mVersion.getMajor()) + " of NanoVDB's layout, and " +
+                 std::to_string(nanovdb::Version().getMajor()) + " is read";
+  head.name.assign(data.mGridName, strnlen(data.mGridName, sizeof data.mGridName));
+  head.grid_type = uint32_t(data.mGridType);
+  head.grid_class = uint32_t(data.mGridClass);
+  return head;
+}
+
 NanoVolume open_nano_volume(View<const std::byte> grid) {
   NanoVolume volume;
   if (grid.size < int64_t(sizeof(nanovdb::GridData) + 64)) {

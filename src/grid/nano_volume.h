@@ -41,6 +41,14 @@ struct NanoKind {
 };
 NanoKind nano_kind(uint32_t grid_type, uint32_t grid_class);
 
+/// What the header of a grid in memory says.
+struct NanoHead {
+  std::string name;
+  uint32_t grid_type = 0, grid_class = 0;  ///< as nano_kind() takes them
+  std::string fault;                       ///< why these bytes are no grid of a layout that is read; empty: they are
+};
+NanoHead nano_head_of(View<const std::byte> grid);
+
 /// The grid in these bytes, which start at a multiple of kNanoAlignment and must outlive the result. Every node lies in
 /// them and no more nodes are visited than they have room for.
 NanoVolume open_nano_volume(View<const std::byte> grid);

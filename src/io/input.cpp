@@ -1,288 +1,19 @@
-// Tells meshes, point clouds, volumes and stage files apart, reads them, and says what they held.
+// Inputs by their names.
 #include "isoshell/io/input.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <iterator>
-#include <sstream>
-#include <unordered_set>
 #include <utility>
 
 #include "core/file_format.h"
-#include "geometry/box.h"
-#include "geometry/given_surface.h"
-#include "geometry/world_vector.h"
-#include "io/faces/face_collector.h"
-#include "io/vdb/grid_fields.h"
-#include "io/vdb/grid_kinds.h"
+#include "io/input_reader.h"
 #include "io/vdb/stage_reader.h"
-#include "isoshell/advanced/stages.h"
 #include "isoshell/error.h"
-#include "isoshell/io/file_format.h"
-#include "isoshell/io/memory_input.h"
-#include "isoshell/io/mesh_file.h"
-#include "isoshell/io/python_formats.h"
-#include "isoshell/io/volume_file.h"
-#include "isoshell/readable.h"
+#include "isoshell/io/vdb_file.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kNotableOpenPart = 0.01;  // of a surface of points that no point supports
-constexpr double kNotableLostPart = 0.05;  // of points, by area, that no surface goes through
-constexpr double kParticlePart = 0.65;     // of points without a flat neighbourhood, where they fill a volume
-constexpr double kNotableJumps = 0.01;     // of the cells that the surface of a volume crosses
-
-[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::unreadable_input, "read", message); }
 [[noreturn]] void refuse_use(const std::string& message) { throw Error(ErrorCode::usage, "read", message); }
-
-void check_exists(const std::string& path) {
-  std::error_code code;
-  const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) {
-    const bool is_pattern = path.find_first_of("#%*") != std::string::npos;
-    refuse(path + ": no such file" +
-           (is_pattern
-                ? "; only vdb_isomesh with --frames, as 1-240, takes a pattern, as mesh.####.ply or mesh.%04d.ply"
-                : ""));
-  }
-  if (std::filesystem::is_directory(status)) refuse(path + ": is a folder, not a file");
-  if (access(path.c_str(), R_OK) != 0) refuse(path + ": " + std::strerror(errno));  // a pipe opens only once
-}
-
-/// Readers leave out points that are not finite; those from memory may be anything.
-void check_points(const PointCloud& cloud, const std::string& name) {
-  for (const auto* values : {&cloud.position, &cloud.normal})
-    for (size_t i = 0; i < values->size(); ++i) {
-      const WorldPoint& p = (*values)[i];
-      if (is_finite(p)) continue;
-      std::ostringstream text;
-      text << name << ": " << (values == &cloud.position ? "point " : "normal ") << i << " is (" << p.x << ", " << p.y
-           << ", " << p.z << "); positions and normals must be finite";
-      refuse(text.str());
-    }
-  if (!cloud.normal.empty() && cloud.normal.size() != cloud.position.size())
-    refuse_use(name + ": there are " + std::to_string(cloud.normal.size()) + " normals and " +
-               counted(int64_t(cloud.position.size()), "point") + "; give one normal a point");
-}
-
-/// Names of grids without a file of theirs.
-std::vector<std::string> own_grids(const std::vector<std::string>& names) {
-  std::vector<std::string> own;
-  std::copy_if(names.begin(), names.end(), std::back_inserter(own),
-               [](const std::string& name) { return grid_name_of(name).file.empty(); });
-  return own;
-}
-
-[[noreturn]] void refuse_iso() { refuse_use("--iso is for volumes; leave it out"); }
-
-void check_no_labels(const LabelReading& labels) {
-  if (const char* const option = labels.given())
-    refuse_use(std::string(option) + " is for volumes of labels; leave it out");
-}
-
-class Reader {
- public:
-  Reader(const std::string& path, const Context& context, const Tell& tell) : context_(context), tell_(tell) {
-    input_.facts.path = path;
-  }
-
-  void read(const InputRequest& request) {
-    const std::string& path = request.path;
-    if (path != "-") check_exists(path);
-    const std::string format = request.format.empty() ? format_of_path(path) : request.format;
-    const FileFormat* const known = find_format(format);
-    if (!known)
-      refuse(path + ": the format '" + format + "' is not one of " + listed_formats(reads_anything, ", ") +
-             "; say which by --input-format" + python_remedy(path, false));
-    if (known->reads_mesh && known->reads_points)
-      read_ply(request);
-    else if (known->reads_mesh)
-      hold(read_mesh(path, format, context_.memory_limit_bytes));
-    else if (known->reads_points)
-      hold(read_points(path, format, context_.memory_limit_bytes), request);
-    else
-      read_volume_file(request);
-    if (request.iso && input_.facts.kind != InputKind::volume) refuse_iso();
-    if (input_.facts.kind != InputKind::labels) check_no_labels(request.labels);
-  }
-
-  void hold(TriangleSoup soup) {
-    InputFacts& facts = input_.facts;
-    facts.vertices = int64_t(soup.vertices.size());
-    facts.faces = soup.faces_in_file;
-    const WorldBox box = bounding_box(soup);
-    facts.box_min = box.min;
-    facts.box_max = box.max;
-    facts.regions = regions_of_surface(soup);
-    note(counted(facts.vertices, "vertex", "vertices") + ", " + counted(facts.faces, "face"));
-    input_.soup = std::move(soup);
-  }
-
-  void hold_points(PointCloud cloud) {
-    std::vector<WorldPoint>& points = input_.points = std::move(cloud.position);
-    std::sort(points.begin(), points.end(), is_before);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    if (points.empty()) throw Error(ErrorCode::nothing_to_mesh, "points", input_.facts.path + ": holds no point");
-    const WorldBox box = box_of(points);
-    InputFacts& facts = input_.facts;
-    facts.kind = InputKind::points;
-    facts.vertices = int64_t(points.size());
-    facts.faces = 0;
-    facts.box_min = box.min;
-    facts.box_max = box.max;
-    note(counted(facts.vertices, "point"));
-  }
-
-  void hold(const PointCloud& cloud, VolumeCreases creases, bool keep_open) {
-    input_.facts.kind = InputKind::points;
-    PointSurfaceInfo points;
-    hold(surface_of_points(cloud, context_.memory_limit_bytes, points, creases, keep_open));
-    input_.facts.vertices = points.points;
-    std::ostringstream text;
-    text << counted(points.points, "point") << ", spacing " << points.spacing_world << ", surface from voxels of "
-         << points.voxel_size_world << ", normals "
-         << (points.normals_given && !points.normals_ignored ? "given" : "estimated")
-         << (points.normals_turned ? " and turned" : "") << (points.sharp ? ", sides with creases" : "");
-    note(text.str());
-    if (points.normals_ignored) warn("its normals do not fit its points; others were estimated");
-    if (points.unflat_part >= kParticlePart)
-      warn("the points fill a volume, as particles of a fluid do: " +
-           std::to_string(std::lround(100 * points.unflat_part)) +
-           " % of them have no flat neighbourhood; a surface around particles is made by a tool such as splashsurf, " +
-           "whose mesh can be the input here");
-    if (points.outliers > 0) warn(counted(points.outliers, "point") + " left out, far from all others");
-    if (1 - points.held_part >= kNotableLostPart)
-      warn(std::to_string(std::lround(100 * (1 - points.held_part))) +
-           " % of the points, by area, are far from the surface that was found" +
-           (points.normals_given ? "" : "; normals of their own may tell their sides"));
-    if (points.open_part >= kNotableOpenPart)
-      warn(std::to_string(std::lround(100 * points.open_part)) + " % of the surface has no points near it and " +
-           (keep_open ? "was left out" : "was closed smoothly; --boundary keep leaves it open"));
-  }
-
-  template <class Extract>
-  void hold_volume(bool keep_open, Extract extract) {
-    input_.facts.kind = InputKind::volume;
-    VolumeInfo volume;
-    hold(extract(volume));
-    std::ostringstream text;
-    text << "grid " << volume.grid << ", " << volume.grid_class << ", surface at " << volume.iso << ", voxel size "
-         << volume.voxel_size_world << ", " << counted(volume.blocks, "block")
-         << (volume.kind == VolumeKind::at_value ? "" : ", unsigned distances");
-    note(text.str());
-    if (volume.open_cells > 0) {
-      const WorldPoint& at = volume.first_open_world;
-      std::ostringstream open;
-      if (volume.unknown_values > 0)
-        open << counted(volume.unknown_values, "value")
-             << (volume.unknown_values == 1 ? " is not known" : " are not known") << ", and its";
-      else
-        open << "its distances jump, and its";
-      open << " surface is open in " << counted(volume.open_cells, "cell") << " there, the first near " << at.x << ' '
-           << at.y << ' ' << at.z << (keep_open ? "" : ": holes there are closed, or kept by --boundary keep");
-      warn(open.str());
-    } else if (volume.jumping_part >= kNotableJumps) {
-      warn(std::to_string(std::lround(100 * volume.jumping_part)) +
-           " % of its surface is where its distances jump: it has one side of an open surface alone, or was clipped; "
-           "--boundary keep leaves it open there");
-    }
-    if (volume.kind == VolumeKind::open_unsigned_distance)
-      warn(
-          "the zero set of its unsigned distances encloses nothing; the closed crust around it is meshed, 0.9 voxels "
-          "from it");
-  }
-
-  void hold(LabelVolume labels, const std::string& origin = "") {
-    input_.facts.kind = InputKind::labels;
-    const std::array<int32_t, 3> size_vox = labels.size_vox;
-    hold(surface_of_labels(std::move(labels), input_.facts.name(), context_,
-                           [&](MessageKind kind, const std::string& text) { tell(kind, text); }));
-    std::unordered_set<int32_t> regions;
-    for (const auto& pair : input_.soup.regions.labels) regions.insert(pair.begin(), pair.end());
-    regions.erase(input_.soup.regions.background);
-    note(origin + counted(int64_t(regions.size()), "region") + ", " + std::to_string(size_vox[0]) + " x " +
-         std::to_string(size_vox[1]) + " x " + std::to_string(size_vox[2]) + " voxels");
-  }
-
-  Input taken() { return std::move(input_); }
-
- private:
-  void hold(PointCloud cloud, const InputRequest& request) {
-    if (request.keep_points)
-      hold_points(std::move(cloud));
-    else
-      hold(cloud, request.creases, request.keep_open);
-  }
-
-  void read_ply(const InputRequest& request) {
-    PlyContent content = read_ply_content(input_.facts.path, context_.memory_limit_bytes);
-    if (!content.is_points) return hold(std::move(content.mesh));
-    if (content.unusable_faces > 0)
-      warn("none of its faces is usable (" + with_commas(content.unusable_faces) + "); it is read as a point cloud");
-    hold(std::move(content.points), request);
-  }
-
-  void read_volume_file(const InputRequest& request) {
-    ReadingBudget budget(context_.memory_limit_bytes);
-    const MeshSource source(request.path, budget);
-    if (holds_stage({source.begin(), source.size()})) return read_stage_file(source);
-    if (holds_labels(source, request.grid))
-      read_label_file(source, request);
-    else
-      read_level_set(source, request);
-    read_grids(source, request);
-  }
-
-  void read_level_set(const MeshSource& source, const InputRequest& request) {
-    hold_volume(request.keep_open, [&](VolumeInfo& volume) {
-      return read_volume(source,
-                         {request.grid, request.iso, context_.memory_limit_bytes, request.creases, VolumeSides::sample,
-                          false, request.keep_open},
-                         volume);
-    });
-  }
-
-  /// The bytes of standard input are there no second time: all that a run takes of them is read now.
-  void read_grids(const MeshSource& source, const InputRequest& request) {
-    const std::vector<std::string> names = own_grids(request.grids);
-    if (names.empty() || is_nano_file(source)) return;
-    input_.grids = read_grid_fields(source, names, meshed_grid(source, request.grid));
-    for (const auto& grid : *input_.grids) note("grid " + grid->name() + " is sampled at the vertices");
-  }
-
-  void read_label_file(const MeshSource& source, const InputRequest& request) {
-    if (request.iso) refuse_iso();  // before the labels are read
-    LabelGrid grid = read_label_grid(source, {request.grid, context_.memory_limit_bytes, request.labels.background});
-    if (request.labels.smallest_island_vox) grid.volume.smallest_island_vox = *request.labels.smallest_island_vox;
-    if (request.labels.smoothing_vox) grid.volume.smoothing_vox = *request.labels.smoothing_vox;
-    if (request.labels.is_periodic) grid.volume.is_periodic = *request.labels.is_periodic;
-    hold(std::move(grid.volume), "grid " + grid.name + ", ");
-  }
-
-  void read_stage_file(const MeshSource& source) {
-    input_.facts.kind = InputKind::stage;
-    input_.stage = read_stage(source);
-    note("stage " + input_.stage->info.stage + ", " +
-         counted(input_.stage->shell.voxels.voxel_count(), "active voxel"));
-  }
-
-  void note(const std::string& text) const { tell(MessageKind::note, text); }
-  void warn(const std::string& text) const { tell(MessageKind::warning, text); }
-  void tell(MessageKind kind, const std::string& text) const {
-    if (tell_) tell_(kind, input_.facts.name() + ": " + text);
-  }
-
-  Input input_;
-  const Context& context_;
-  const Tell& tell_;
-};
 
 }  // namespace
 
@@ -333,7 +64,7 @@ StageFile read_stage(const std::string& path) {
 }
 
 Input read_input(const InputRequest& request, const Context& context, const Tell& tell) {
-  Reader reader(request.path, context, tell);
+  InputReader reader(request.path, context, tell);
   reader.read(request);
   return reader.taken();
 }
@@ -342,47 +73,6 @@ Input read_input(const InputRequest& request, int64_t memory_limit_bytes, const 
   Context context;
   context.memory_limit_bytes = memory_limit_bytes;
   return read_input(request, context, tell);
-}
-
-Input input_of(TriangleSoup soup, const std::string& name, const Tell& tell) {
-  check_surface(soup, name);
-  if (soup.faces_in_file == 0) soup.faces_in_file = int64_t(soup.triangles.size());  // it comes from no file
-  const Context unlimited;
-  Reader reader(name, unlimited, tell);
-  reader.hold(std::move(soup));
-  return reader.taken();
-}
-
-Input input_of(const PointCloud& cloud, const std::string& name, int64_t memory_limit_bytes, const Tell& tell,
-               VolumeCreases creases, bool keep_open) {
-  check_points(cloud, name);
-  Context context;
-  context.memory_limit_bytes = memory_limit_bytes;
-  Reader reader(name, context, tell);
-  reader.hold(cloud, creases, keep_open);
-  return reader.taken();
-}
-
-Input input_of_points(PointCloud cloud, const std::string& name, const Tell& tell) {
-  check_points(cloud, name);
-  const Context unlimited;
-  Reader reader(name, unlimited, tell);
-  reader.hold_points(std::move(cloud));
-  return reader.taken();
-}
-
-Input input_of(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell) {
-  Reader reader(name, context, tell);
-  reader.hold(std::move(volume));
-  return reader.taken();
-}
-
-Input input_of(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options, const Tell& tell) {
-  const Context unlimited;  // the options have the limit
-  Reader reader(name, unlimited, tell);
-  reader.hold_volume(options.keep_open,
-                     [&](VolumeInfo& info) { return surface_of_volume(volume, name, options, info); });
-  return reader.taken();
 }
 
 }  // namespace isoshell

@@ -202,9 +202,13 @@ TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& optio
 
 TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info) {
   if (source.size() == 0) source.nothing_to_mesh("is empty (0 bytes); give a file with a volume");
-  std::unique_ptr<ScalarField> field =
-      is_nano_file(source) ? read_nano_volume(source, options) : read_vdb_volume(source, options);
-  field->file = source.name();
+  return read_volume(is_nano_file(source) ? read_nano_volume(source, options) : read_vdb_volume(source, options),
+                     source.name(), options, info);
+}
+
+TriangleSoup read_volume(std::unique_ptr<ScalarField> field, const std::string& file, const VolumeReadOptions& options,
+                         VolumeInfo& info) {
+  field->file = file;
   check_map(*field);
   if (field->is_band_alone()) field = with_points_beside_band(std::move(field), options.memory_limit_bytes);
   return described_surface_of(*field, options, info);

@@ -5,8 +5,11 @@
 #include <memory>
 
 #include "grid/nano_volume.h"
+#include "io/vdb/held_grid.h"
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/volume_readers.h"
+#include "isoshell/error.h"
+#include "isoshell/io/memory_grid.h"
 
 namespace isoshell {
 namespace {
@@ -28,6 +31,12 @@ T value_at(const char* bytes, int64_t offset) {
   T value;
   std::memcpy(&value, bytes + offset, sizeof value);
   return value;
+}
+
+VolumeGrid about_nano(const std::string& name, const NanoKind& kind) {
+  VolumeGrid grid{name, kind.type, kind.grid_class, ""};
+  if (!kind.scalar) grid.flaw = "holds no numbers that have a surface; save it as float";
+  return grid;
 }
 
 std::vector<NanoGridSpan> read_index(const MeshSource& source) {
@@ -52,8 +61,7 @@ std::vector<NanoGridSpan> read_index(const MeshSource& source) {
       span.file_bytes = value_at<int64_t>(index, 8);
       const uint32_t name_bytes = value_at<uint32_t>(index, 136);
       const char* name = in.take(name_bytes, "name of a grid");
-      span.grid = {std::string(name, strnlen(name, name_bytes)), kind.type, kind.grid_class, ""};
-      if (!kind.scalar) span.grid.flaw = "holds no numbers that have a surface; save it as float";
+      span.grid = about_nano(std::string(name, strnlen(name, name_bytes)), kind);
       grids.push_back(span);
     }
     for (size_t i = first; i < grids.size(); ++i) {
@@ -82,12 +90,11 @@ class GridBytes {
 
 class NanoField : public ScalarField {
  public:
-  NanoField(const MeshSource& source, const NanoGridSpan& span) : bytes_(unpack(source, span)) {
-    volume_ = open_nano_volume(bytes_.grid());
-    name = span.grid.name;
-    grid_class = span.grid.grid_class;
-    if (!volume_.fault.empty())
-      throw_unreadable_vdb(source.name(), "grid \"" + name + "\": " + volume_.fault + ": the file is damaged");
+  /// Of a grid in bytes that lie where the field keeps them, or outlive it.
+  NanoField(const VolumeGrid& grid, View<const std::byte> bytes, std::unique_ptr<GridBytes> owned)
+      : bytes_(std::move(owned)), volume_(open_nano_volume(bytes)) {
+    name = grid.name;
+    grid_class = grid.grid_class;
     background = volume_.background;
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) to_world.at[i][j] = volume_.matrix[3 * i + j];
@@ -99,6 +106,8 @@ class NanoField : public ScalarField {
       return a.size != b.size ? a.size < b.size : before(a.origin, b.origin);
     });
   }
+
+  const std::string& fault() const { return volume_.fault; }
 
   std::vector<Voxel> blocks() const override {
     std::vector<Voxel> origins;
@@ -139,19 +148,39 @@ class NanoField : public ScalarField {
     return float(background);
   }
 
-  static GridBytes unpack(const MeshSource& source, const NanoGridSpan& span) {
-    const VdbCursor in(source.name(), {source.begin(), source.size()}, span.begin);
-    GridBytes grid(span.grid_bytes);
-    const View<const char> packed{source.begin() + span.begin, span.file_bytes};
-    if (span.codec == Codec::none)
-      std::memcpy(grid.view().data, packed.data, size_t(span.grid_bytes));
-    else if (!unpack_stream(packed, span.codec == Codec::zip, grid.view()))
-      in.fail("grid \"" + span.grid.name + "\" cannot be unpacked");
-    return grid;
-  }
-
-  const GridBytes bytes_;
+  const std::unique_ptr<GridBytes> bytes_;  ///< null where they are another's
   NanoVolume volume_;
+};
+
+std::unique_ptr<GridBytes> unpack(const MeshSource& source, const NanoGridSpan& span) {
+  const VdbCursor in(source.name(), {source.begin(), source.size()}, span.begin);
+  auto grid = std::make_unique<GridBytes>(span.grid_bytes);
+  const View<const char> packed{source.begin() + span.begin, span.file_bytes};
+  if (span.codec == Codec::none)
+    std::memcpy(grid->view().data, packed.data, size_t(span.grid_bytes));
+  else if (!unpack_stream(packed, span.codec == Codec::zip, grid->view()))
+    in.fail("grid \"" + span.grid.name + "\" cannot be unpacked");
+  return grid;
+}
+
+[[noreturn]] void refuse_nano(const std::string& what) {
+  throw Error(ErrorCode::unreadable_input, "read", "a grid of NanoVDB: " + what);
+}
+
+/// A grid whose bytes are another's.
+class HeldNanoGrid final : public HeldGrid {
+ public:
+  HeldNanoGrid(const VolumeGrid& volume, const VolumeGrid& labels, View<const std::byte> bytes)
+      : HeldGrid(volume, labels), bytes_(bytes) {}
+  std::unique_ptr<ScalarField> field() const override {
+    auto field = std::make_unique<NanoField>(volume(), bytes_, nullptr);
+    if (!field->fault().empty()) refuse_nano("grid \"" + volume().name + "\": " + field->fault());
+    return field;
+  }
+  LabelVolume label_volume(const std::string&, const LabelReadOptions&) const override { return {}; }
+
+ private:
+  const View<const std::byte> bytes_;
 };
 
 }  // namespace
@@ -167,7 +196,24 @@ std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const Vo
                                             std::to_string(span.file_bytes) + " bytes hold " +
                                             std::to_string(span.grid_bytes) + ": the file is damaged");
   check_volume_memory(source, span.grid, span.grid_bytes, options);
-  return std::make_unique<NanoField>(source, span);
+  std::unique_ptr<GridBytes> bytes = unpack(source, span);
+  const View<const std::byte> grid = bytes->grid();
+  auto field = std::make_unique<NanoField>(span.grid, grid, std::move(bytes));
+  if (!field->fault().empty())
+    throw_unreadable_vdb(source.name(), "grid \"" + span.grid.name + "\": " + field->fault() + ": the file is damaged");
+  return field;
+}
+
+MemoryGrid nano_grid(View<const std::byte> bytes) {
+  if (reinterpret_cast<uintptr_t>(bytes.data) % uintptr_t(kNanoAlignment) != 0)
+    refuse_nano("its bytes do not start at a multiple of " + std::to_string(kNanoAlignment) +
+                "; copy them to where they do");
+  const NanoHead head = nano_head_of(bytes);
+  if (!head.fault.empty()) refuse_nano(head.fault);
+  const VolumeGrid volume = about_nano(head.name, nano_kind(head.grid_type, head.grid_class));
+  VolumeGrid labels = volume;
+  labels.flaw = "holds no labels that are read; save them in a grid of OpenVDB";
+  return MemoryGrid(std::make_shared<HeldNanoGrid>(volume, labels, bytes));
 }
 
 }  // namespace isoshell

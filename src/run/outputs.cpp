@@ -186,7 +186,8 @@ void check_request(const RunRequest& r) {
   possible_features(r.options.values, r);
   if (!r.save_voronoi.empty() && (r.stop_after == StopAfter::shell || r.stop_after == StopAfter::level_set))
     refuse_use("--save-voronoi needs seeds, which come after --stop-after; leave one of them out");
-  if ((!r.save_level_set.empty() || r.stop_after == StopAfter::level_set) && !r.options.values.regions.empty())
+  if ((r.keep_level_set || !r.save_level_set.empty() || r.stop_after == StopAfter::level_set) &&
+      !r.options.values.regions.empty())
     refuse_use("a level set is of one solid; leave out --regions, or the level set");
   check_one_to_pipe(outputs_of(r));
   const OutputRequest output = named_output(r.output.path, r.output.format, r.stop_after);  // may refuse it

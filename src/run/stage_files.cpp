@@ -30,6 +30,8 @@ std::vector<std::string> level_set_files(const RunRequest& request) {
   return stage_files(request, request.save_level_set, StopAfter::level_set);
 }
 
+bool makes_level_set(const RunRequest& request) { return request.keep_level_set || !level_set_files(request).empty(); }
+
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite) {
   StageWriteOptions options;

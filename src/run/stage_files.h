@@ -20,6 +20,8 @@ std::string left_out_of_stage_files(const Input& input, const std::optional<std:
 std::vector<std::string> stage_files(const RunRequest& request, const std::string& saved, StopAfter stage);
 
 std::vector<std::string> level_set_files(const RunRequest& request);
+/// Whether a run makes a level set.
+bool makes_level_set(const RunRequest& request);
 
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite);

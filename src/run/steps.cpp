@@ -47,7 +47,7 @@ class RunSteps::Run {
     record_.output.format = named_output(request_.output.path, request_.output.format, request_.stop_after).format;
     options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() ||
                                   request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::voronoi;
-    if (!level_set_files(request_).empty()) options_.values.level_set_band_vox = request_.level_set_band_vox;
+    if (makes_level_set(request_)) options_.values.level_set_band_vox = request_.level_set_band_vox;
     options_.values.want_digests |= measures_all(request_);
   }
 
@@ -63,8 +63,7 @@ class RunSteps::Run {
     const Book book{*this};
     const Metered metered(progress_.meter, context);
     return naming_written(written_, [&]() -> std::invoke_result_t<Work> {
-      if (record_.device.backend == "cpu")
-        record_.device = device_info(context);  // no time is lost where there is none
+      if (record_.device.backend == "cpu") record_.device = device_info(context);  // no time is lost without one
       return work();
     });
   }
@@ -142,9 +141,9 @@ class RunSteps::Run {
     prepare();
     if (!options_.values.want_shell && options_.values.method == Method::sheet)
       prepared_->free_samples();  // made the sheet, and are not read again
-    const std::optional<StageFile>& stage = input_->stage;
+    const bool has_seeds = input_->stage && input_->stage->seeds;
     relaxed_ = timed("relax", [&] {
-      return stage && stage->seeds ? seeds_of_stage(*input_, *prepared_) : isoshell::relax(*prepared_, *context_);
+      return has_seeds ? seeds_of_stage(*input_, *prepared_) : isoshell::relax(*prepared_, *context_);
     });
     record_.report = relaxed_->report;
     return *relaxed_;
@@ -155,7 +154,7 @@ class RunSteps::Run {
     prepare();
     for (const std::string& path : stage_files(request_, request_.save_shell, StopAfter::shell))
       save_shell(path, request_.overwrite);
-    save_level_sets(level_set_files(request_));
+    if (makes_level_set(request_)) make_level_set();
     if (request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::level_set) return result({});
     relax();
     const std::vector<std::string> voronoi = stage_files(request_, request_.save_voronoi, StopAfter::voronoi);
@@ -194,13 +193,13 @@ class RunSteps::Run {
                [&] { isoshell::save_shell(path, p.surface(), p.samples(), p.shell(), stage_options(overwrite)); });
   }
 
-  void save_level_sets(const std::vector<std::string>& paths) {
-    if (paths.empty()) return;
-    const LevelSet set =
-        timed("level-set", [&] { return to_host(level_set(*prepared_, request_.level_set_band_vox, *context_)); });
-    if (request_.stop_after == StopAfter::level_set) record_.report.grid.active_voxels = set.voxels.voxel_count();
-    for (const std::string& path : paths)
-      write_step("save-level-set", path, [&] { save_level_set(path, set, {"surface", false, request_.overwrite}); });
+  void make_level_set() {
+    const auto set = std::make_shared<const LevelSet>(
+        timed("level-set", [&] { return to_host(level_set(*prepared_, request_.level_set_band_vox, *context_)); }));
+    if (request_.stop_after == StopAfter::level_set) record_.report.grid.active_voxels = set->voxels.voxel_count();
+    for (const std::string& path : level_set_files(request_))
+      write_step("save-level-set", path, [&] { save_level_set(path, *set, {"surface", false, request_.overwrite}); });
+    if (request_.keep_level_set) set_ = set;
   }
 
   void save_voronoi(const std::vector<std::string>& paths, bool overwrite) {
@@ -331,7 +330,7 @@ class RunSteps::Run {
                    [&] { write_text(request_.statistics, statistics_json(record), request_.overwrite); });
     std::vector<std::string> missed = missed_gates(request_.gates, record);
     progress_.meter.finish();
-    return {std::move(mesh), std::move(record), request_.gates.requested, std::move(missed), request_.made_of};
+    return {std::move(mesh), std::move(record), request_.gates.requested, std::move(missed), request_.made_of, set_};
   }
 
   RunRequest request_;
@@ -344,6 +343,7 @@ class RunSteps::Run {
   std::optional<Prepared> prepared_;
   std::optional<Relaxed> relaxed_;
   RunRecord record_;
+  std::shared_ptr<const LevelSet> set_;  ///< where it is kept
   std::vector<RegionFile> region_files_;
   std::string left_out_;                           ///< of the input, by stage files
   std::string written_ = request_.written_before;  ///< files that are whole, for who interrupts

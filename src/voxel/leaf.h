@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "isoshell/advanced/voxel_set.h"
+#include "isoshell/advanced/each_voxel.h"
 
 namespace isoshell {
 
@@ -17,19 +17,8 @@ ISOSHELL_HD inline uint64_t leaf_key(Voxel leaf) {
   return root << 27 | upper << 12 | lower;
 }
 
-/// Leaf coordinates of a key.
-ISOSHELL_HD inline Voxel leaf_of_key(uint64_t key) {
-  const uint32_t root = uint32_t(key >> 27), upper = uint32_t(key >> 12) & 32767, lower = uint32_t(key) & 4095;
-  return {int32_t((root >> 20) << 9 | (upper >> 10) << 4 | lower >> 8),
-          int32_t(((root >> 10) & 1023) << 9 | ((upper >> 5) & 31) << 4 | ((lower >> 4) & 15)),
-          int32_t((root & 1023) << 9 | (upper & 31) << 4 | (lower & 15))};
-}
-
 ISOSHELL_HD inline Voxel leaf_of_voxel(Voxel v) { return {v.x >> 3, v.y >> 3, v.z >> 3}; }
 ISOSHELL_HD inline int offset_in_leaf(Voxel v) { return (v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7); }
-ISOSHELL_HD inline Voxel voxel_at(Voxel leaf, int offset) {
-  return {leaf.x * 8 + (offset >> 6), leaf.y * 8 + ((offset >> 3) & 7), leaf.z * 8 + (offset & 7)};
-}
 
 ISOSHELL_HD inline PointQ8 voxel_centre(Voxel v) {
   const int32_t half = kOneVoxelQ8 / 2;
@@ -52,14 +41,6 @@ ISOSHELL_HD inline int popcount64(uint64_t w) {
   w = (w & 0x3333333333333333ull) + (w >> 2 & 0x3333333333333333ull);
   w = (w + (w >> 4)) & 0x0f0f0f0f0f0f0f0full;
   return int(w * 0x0101010101010101ull >> 56);
-#endif
-}
-/// Number of the lowest set bit; w must not be 0.
-ISOSHELL_HD inline int lowest_bit(uint64_t w) {
-#if defined(__CUDA_ARCH__)
-  return __ffsll(static_cast<long long>(w)) - 1;
-#else
-  return __builtin_ctzll(w);
 #endif
 }
 
@@ -115,14 +96,6 @@ ISOSHELL_HD inline Voxel voxel_of_index(const VoxelSetView& set, int64_t index) 
   uint64_t bits = set.mask[lo].word[w];
   for (; rank > 0; --rank) bits &= bits - 1;
   return voxel_at(leaf_of_key(set.leaf_key[lo]), w * 64 + lowest_bit(bits));
-}
-
-/// Calls visit(offset, index) for every active voxel of a leaf, in canonical order.
-template <class Visit>
-ISOSHELL_HD inline void for_each_active(const VoxelSetView& set, int64_t leaf, Visit visit) {
-  int64_t index = set.first[leaf];
-  for (int w = 0; w < 8; ++w)
-    for (uint64_t bits = set.mask[leaf].word[w]; bits; bits &= bits - 1) visit(w * 64 + lowest_bit(bits), index++);
 }
 
 }  // namespace isoshell

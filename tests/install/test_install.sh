@@ -15,6 +15,7 @@ cmake -S "$source/tests/install" -B "$folder/user" "$@" -Disoshell_ROOT="$folder
 cmake --build "$folder/user"
 "$folder/user/remesh" "$source/tests/data/nefertiti.ply" "$folder/out"
 [ -s "$folder/out.ply" ]
+[ ! -e "$folder/user/grid_user" ] || "$folder/user/grid_user" "$folder/ball.ply"
 [ ! -e "$folder/isoshell/bin/vdb_isomesh" ] || "$folder/isoshell/bin/vdb_isomesh" --version
 # A project that was written for another minor version is told so when it is configured.
 if cmake -S "$source/tests/install" -B "$folder/older" "$@" -Disoshell_ROOT="$folder/isoshell" -DISOSHELL_WANTED=0.0 \
@@ -37,6 +38,12 @@ by_pkg_config() {
   "$compiler" -std=c++17 "${compile[@]}" "$source/examples/01_remesh.cpp" -o "$folder/by_pkg_config" $found
   "$folder/by_pkg_config" "$source/tests/data/nefertiti.ply" "$folder/out_by_pkg_config"
   cmp "$folder/out.ply" "$folder/out_by_pkg_config.ply"
+  [ -e "$folder/user/grid_user" ] || return 0
+  found=$(PKG_CONFIG_PATH=$(dirname "$(find "$folder/moved" -name isoshell.pc)") pkg-config --cflags --libs isoshell-openvdb)
+  # shellcheck disable=SC2086
+  "$compiler" -std=c++17 "${compile[@]}" "$source/tests/install/grid_user.cpp" -o "$folder/grid_by_pkg_config" $found
+  "$folder/grid_by_pkg_config" "$folder/ball_by_pkg_config.ply"
+  cmp "$folder/ball.ply" "$folder/ball_by_pkg_config.ply"
 }
 if command -v pkg-config >/dev/null; then
   by_pkg_config "$@"

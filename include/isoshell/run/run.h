@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "isoshell/advanced/level_set.h"
 #include "isoshell/memory_estimate.h"
 #include "isoshell/message.h"
 #include "isoshell/options/options_json.h"
@@ -34,6 +36,7 @@ struct RunRequest {
   std::string save_shell, save_voronoi;  ///< stage files to write on the way, a preview beside the second; empty: none
   std::string save_level_set;            ///< level set to write on the way; empty: none
   double level_set_band_vox = 3;         ///< how far it reaches on both sides
+  bool keep_level_set = false;           ///< in the result, beside a file or without one
   std::string split_regions;             ///< folder for a file of each region; empty: none
   std::string statistics;                ///< file, or "-"; empty: none
   std::string report;  ///< page that the front writes of the result afterwards, from all that is measured; empty: none
@@ -64,7 +67,8 @@ struct RunResult {
   RunRecord record;
   std::vector<std::string> gates;  ///< as they were asked for
   std::vector<std::string> missed_gates;
-  std::string made_of = {};  ///< of a frame: what its PLY file says of that
+  std::string made_of = {};                        ///< of a frame: what its PLY file says of that
+  std::shared_ptr<const LevelSet> level_set = {};  ///< where it was kept, in host memory
 };
 
 /// Checks that every file can be written, reads, and goes on from there as the second form. Its steps are "read",

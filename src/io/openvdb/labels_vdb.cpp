@@ -8,6 +8,7 @@
 
 #include "core/parallel_ranges.h"
 #include "geometry/triangle_list.h"
+#include "io/openvdb/field_of_grid.h"
 #include "io/openvdb/grid_map.h"
 #include "io/openvdb/label_names.h"
 #include "io/openvdb/vdb_grids.h"
@@ -209,6 +210,11 @@ LabelVolume volume_of(const Request& request, const openvdb::GridBase& any_grid)
   return volume;
 }
 
+[[noreturn]] void throw_too_large(const std::string& path, const VolumeGrid& grid) {
+  throw Error(ErrorCode::out_of_memory, "memory",
+              path + ": grid " + grid.text() + " does not fit into memory as an array; crop or coarsen it");
+}
+
 }  // namespace
 
 LabelGrid read_label_grid(const MeshSource& source, const LabelReadOptions& options) {
@@ -222,17 +228,26 @@ LabelGrid read_label_grid(const MeshSource& source, const LabelReadOptions& opti
   const VolumeReadOptions as_options{options.grid, {}, options.memory_limit_bytes};
   const size_t chosen = choose_grid(path, grids, as_options, "of labels");
   const VdbGridSpan& span = layout.grids[chosen];
-  const Request request{source, grids[chosen], check_vdb_tree(path, bytes, span), as_options, options.background};
-  check_volume_memory(source, request.grid, request.tree_bytes, as_options);
+  const int64_t tree_bytes = check_vdb_tree(path, bytes, span);
+  check_volume_memory(source, grids[chosen], tree_bytes, as_options);
   try {
     const openvdb::GridBase::ConstPtr grid = read_vdb_grid(path, bytes, span);
-    LabelGrid read{request.grid.name, request.grid.type == "int32" ? volume_of<int32_t>(request, *grid)
-                                                                   : volume_of<int64_t>(request, *grid)};
-    read.volume.names = label_names_of(span.texts);
-    return read;
+    return {grids[chosen].name, labels_of_grid(source, *grid, grids[chosen], span.texts, tree_bytes, options)};
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::out_of_memory, "memory",
-                path + ": grid " + request.grid.text() + " does not fit into memory as an array; crop or coarsen it");
+    throw_too_large(path, grids[chosen]);
+  }
+}
+
+LabelVolume labels_of_grid(const MeshSource& source, const openvdb::GridBase& grid, const VolumeGrid& about,
+                           const std::map<std::string, std::string>& texts, int64_t tree_bytes,
+                           const LabelReadOptions& options) {
+  const Request request{source, about, tree_bytes, {options.grid, {}, options.memory_limit_bytes}, options.background};
+  try {
+    LabelVolume volume = about.type == "int32" ? volume_of<int32_t>(request, grid) : volume_of<int64_t>(request, grid);
+    volume.names = label_names_of(texts);
+    return volume;
+  } catch (const std::bad_alloc&) {
+    throw_too_large(source.name(), about);
   }
 }
 

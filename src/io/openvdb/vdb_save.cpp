@@ -2,13 +2,13 @@
 // header: OpenVDB by itself keeps all grids in memory and compresses one leaf after the other.
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "core/copy_product.h"
 #include "io/openvdb/key_values.h"
+#include "io/openvdb/shell_values.h"
 #include "io/openvdb/vdb_grids.h"
 #include "io/openvdb/vdb_stream.h"
 #include "io/vdb/shell_sites.h"
@@ -190,9 +190,7 @@ void add_shell(StageWriter& file, const LatticeSurface& surface, const SiteSampl
   const VoxelSet& set = shell.voxels;
   if (options.view_grids) {
     scratch.sites = list_voxels(site_set.voxels);
-    const auto distance = [distance_sq = shell.distance_sq_vox.view(), size = frame.voxel_size](
-                              int64_t, int, int64_t i) { return float(std::sqrt(double(distance_sq[i])) * size); };
-    file.voxels<VdbFloatGrid>("shell_distance", set, float(shell.band_vox * frame.voxel_size), distance);
+    file.voxels<VdbFloatGrid>(kShellDistance, set, shell_background(shell, frame), shell_distances(shell, frame));
     file.voxels<VdbVec3fGrid>("closest_offset", set, openvdb::Vec3f(0),
                               ClosestOffset{set.view(), scratch.sites.view(), samples.sample.view(),
                                             shell.closest_site.view(), frame.voxel_size / kOneVoxelQ8},
@@ -202,11 +200,8 @@ void add_shell(StageWriter& file, const LatticeSurface& surface, const SiteSampl
     scratch.risk = find_risks(surface, samples);
     file.flags("risk", shell, scratch.risk, {});
   }
-  file.voxels<VdbIntGrid>(kClosestSite, set, -1,
-                          [site = shell.closest_site.view()](int64_t, int, int64_t i) { return int32_t(site[i]); });
-  file.voxels<VdbIntGrid>(kDistanceSq, set, -1, [distance_sq = shell.distance_sq_vox.view()](int64_t, int, int64_t i) {
-    return int32_t(distance_sq[i]);
-  });
+  file.voxels<VdbIntGrid>(kClosestSite, set, -1, closest_sites(shell));
+  file.voxels<VdbIntGrid>(kDistanceSq, set, -1, squared_distances(shell));
 }
 
 void check_shell(const Shell& shell) {

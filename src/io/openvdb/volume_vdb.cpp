@@ -8,6 +8,7 @@
 #include <istream>
 
 #include "io/bytes/memory_stream.h"
+#include "io/openvdb/field_of_grid.h"
 #include "io/openvdb/grid_map.h"
 #include "io/openvdb/vdb_stream.h"
 #include "io/vdb/grid_kinds.h"
@@ -108,14 +109,17 @@ std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const Vol
   const size_t chosen = choose_grid(source.name(), grids, options);
   const VdbGridSpan& span = layout.grids[chosen];
   check_volume_memory(source, grids[chosen], check_vdb_tree(source.name(), bytes, span), options);
-  const openvdb::GridBase::ConstPtr grid = read_vdb_grid(source.name(), bytes, span);
+  return field_of_grid(read_vdb_grid(source.name(), bytes, span), grids[chosen]);
+}
+
+std::unique_ptr<ScalarField> field_of_grid(const openvdb::GridBase::ConstPtr& grid, const VolumeGrid& about) {
   std::unique_ptr<ScalarField> field;
-  if (grids[chosen].type == "float")
+  if (about.type == "float")
     field = std::make_unique<VdbField<openvdb::FloatGrid>>(openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid));
   else
     field = std::make_unique<VdbField<openvdb::DoubleGrid>>(openvdb::gridConstPtrCast<openvdb::DoubleGrid>(grid));
-  field->name = grids[chosen].name;
-  field->grid_class = grids[chosen].grid_class;
+  field->name = about.name;
+  field->grid_class = about.grid_class;
   return field;
 }
 

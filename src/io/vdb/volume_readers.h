@@ -36,5 +36,8 @@ std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const Vo
 
 /// read_volume() of bytes that are in memory.
 TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info);
+/// read_volume() of a field; `file` is what messages say it is of.
+TriangleSoup read_volume(std::unique_ptr<ScalarField> field, const std::string& file, const VolumeReadOptions& options,
+                         VolumeInfo& info);
 
 }  // namespace isoshell

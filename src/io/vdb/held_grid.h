@@ -1,0 +1,32 @@
+// What a MemoryGrid holds.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "implicit/volumes/scalar_field.h"
+#include "io/vdb/volume_readers.h"
+#include "isoshell/io/label_file.h"
+
+namespace isoshell {
+
+class HeldGrid {
+ public:
+  /// The grid as a volume and as labels: what keeps it from being either is its flaw.
+  HeldGrid(VolumeGrid volume, VolumeGrid labels) : volume_(std::move(volume)), labels_(std::move(labels)) {}
+  virtual ~HeldGrid() = default;
+
+  const VolumeGrid& volume() const { return volume_; }
+  const VolumeGrid& labels() const { return labels_; }
+
+  /// Of a grid that is a volume. The grid outlives the field.
+  virtual std::unique_ptr<ScalarField> field() const = 0;
+  /// Of a grid of labels. `place` is what messages call where it is. Throws: as read_labels().
+  virtual LabelVolume label_volume(const std::string& place, const LabelReadOptions& options) const = 0;
+
+ private:
+  VolumeGrid volume_, labels_;
+};
+
+}  // namespace isoshell
