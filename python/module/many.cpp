@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "isoshell/workers.h"
+#include "isoshell/advanced/workers.h"
 #include "module/watched.h"
 #include "values/errors.h"
 #include "values/result.h"

@@ -1,6 +1,6 @@
 // Attributes of one surface for another: those of vertices by each vertex's nearest point, among triangles that look
 // its way if one is about as near; those of corners and faces by the middle of each face.
-#include "isoshell/transfer_attributes.h"
+#include "isoshell/advanced/transfer_attributes.h"
 
 #include <algorithm>
 #include <deque>

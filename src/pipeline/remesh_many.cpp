@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/watched.h"
-#include "isoshell/workers.h"
+#include "isoshell/advanced/workers.h"
 
 namespace isoshell {
 namespace {

@@ -1,4 +1,4 @@
-#include "isoshell/workers.h"
+#include "isoshell/advanced/workers.h"
 
 #include <tbb/info.h>
 

@@ -6,11 +6,11 @@
 
 #include "isoshell/advanced/digest.h"
 #include "isoshell/advanced/to_host.h"
+#include "isoshell/advanced/transfer_attributes.h"
 #include "isoshell/error.h"
 #include "isoshell/io/mesh_file.h"
 #include "isoshell/io/polyline_file.h"
 #include "isoshell/repair.h"
-#include "isoshell/transfer_attributes.h"
 #include "progress/step.h"
 #include "run/added_attributes.h"
 #include "run/choose_attributes.h"

@@ -4,9 +4,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "isoshell/advanced/transfer_attributes.h"
 #include "isoshell/error.h"
 #include "isoshell/run/run.h"
-#include "isoshell/transfer_attributes.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
 #include "support/refusals.h"

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "isoshell/advanced/digest.h"
+#include "isoshell/advanced/workers.h"
 #include "isoshell/remesh_many.h"
-#include "isoshell/workers.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
 #include "support/refusals.h"
