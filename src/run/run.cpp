@@ -28,11 +28,15 @@ VolumeCreases volume_creases(const Features& features) {
   return features.creases == Features::Creases::automatic ? VolumeCreases::of_sharp_bodies : VolumeCreases::all;
 }
 
-Input read_input_of(const RunRequest& request, const Context& context, const Tell& tell) {
+InputRequest input_request_of(const RunRequest& request) {
   InputRequest input = request.input;
   input.creases = volume_creases(request.options.values.features);
   input.keep_open = request.options.values.boundary == Boundary::keep;
-  return read_input(input, context, tell);
+  return input;
+}
+
+Input read_input_of(const RunRequest& request, const Context& context, const Tell& tell) {
+  return read_input(input_request_of(request), context, tell);
 }
 
 }  // namespace isoshell

@@ -88,6 +88,9 @@ RunEstimate dry_run(Input input, const RunRequest& request, Context& context);
 /// How a run with these features has a volume or points read.
 VolumeCreases volume_creases(const Features& features);
 
+/// What a run of the request reads its input by, of a file or in memory: with the creases and borders that it keeps.
+InputRequest input_request_of(const RunRequest& request);
+
 /// Reads the input as a run of the request does. Throws: as read_input().
 Input read_input_of(const RunRequest& request, const Context& context, const Tell& tell);
 

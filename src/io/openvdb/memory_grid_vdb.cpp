@@ -35,22 +35,27 @@ VdbGridSpan span_of(const openvdb::GridBase& grid) {
 
 class HeldVdbGrid final : public HeldGrid {
  public:
-  HeldVdbGrid(openvdb::GridBase::ConstPtr grid, const VdbGridSpan& span)
-      : HeldGrid(as_volume(span), as_labels(span)), grid_(std::move(grid)), texts_(span.texts) {}
+  HeldVdbGrid(openvdb::GridBase::ConstPtr grid, const AffineMap& map, const VdbGridSpan& span)
+      : HeldGrid(as_volume(span), as_labels(span)), grid_(std::move(grid)), map_(map), texts_(span.texts) {}
 
-  std::unique_ptr<ScalarField> field() const override { return field_of_grid(grid_, volume()); }
+  std::unique_ptr<ScalarField> field() const override {
+    std::unique_ptr<ScalarField> field = field_of_grid(grid_, volume());
+    field->to_world = map_;
+    return field;
+  }
   LabelVolume label_volume(const std::string& place, const LabelReadOptions& options) const override {
     return labels_of_grid(MeshSource(place, View<const char>{}), *grid_, labels(), texts_, 0, options);
   }
 
  private:
   const openvdb::GridBase::ConstPtr grid_;
+  const AffineMap map_;  ///< a Transform that OpenVDB makes or copies has lost digits of it
   const std::map<std::string, std::string> texts_;
 };
 
-MemoryGrid held(openvdb::GridBase::ConstPtr grid) {
+MemoryGrid held(openvdb::GridBase::ConstPtr grid, const AffineMap& map) {
   const VdbGridSpan span = span_of(*grid);
-  return MemoryGrid(std::make_shared<HeldVdbGrid>(std::move(grid), span));
+  return MemoryGrid(std::make_shared<HeldVdbGrid>(std::move(grid), map, span));
 }
 
 /// A voxel and its index, in an order that has leaves one after another, and in each its voxels by offset.
@@ -85,7 +90,6 @@ class SparseGrid {
     add_vdb_leaves(
         *grid, int64_t(first_.size()) - 1, [&](int64_t l) { return leaf_of(voxel(first_[size_t(l)])); },
         [&](int64_t l, float* values) { return fill(size_t(l), values); });
-    grid->setTransform(transform());
     if (!volume_.is_level_set) return grid;
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
     openvdb::tools::signedFloodFill(grid->tree());
@@ -108,6 +112,8 @@ class SparseGrid {
              "; give one value a voxel");
     if (count > int64_t(UINT32_MAX)) refuse("has more than " + std::to_string(UINT32_MAX) + " voxels; crop it");
     if (!std::isfinite(float(volume_.background))) refuse("its background must be finite");
+    if (!is_invertible(lattice_map(volume_.step_world, volume_.origin_world)))
+      refuse("its steps from voxel to voxel span no volume; give three finite ones that do");
     const int64_t wrong = first_where([&](int64_t i) {
       const Voxel v = volume_.voxels[i];
       return std::isinf(volume_.values[i]) || !is_near(v.x) || !is_near(v.y) || !is_near(v.z);
@@ -171,15 +177,6 @@ class SparseGrid {
     return mask;
   }
 
-  openvdb::math::Transform::Ptr transform() const {
-    try {
-      if (is_invertible(lattice_map(volume_.step_world, volume_.origin_world)))
-        return transform_of(volume_.step_world, volume_.origin_world);
-    } catch (const openvdb::Exception&) {
-    }
-    refuse("its steps from voxel to voxel span no volume; give three finite ones that do");
-  }
-
   const SparseVolume& volume_;
   const std::string name_;
   std::vector<PlacedVoxel> order_;
@@ -194,12 +191,13 @@ MemoryGrid read_grid(const openvdb::GridBase& grid) {
     throw Error(ErrorCode::unreadable_input, "read",
                 "grid \"" + grid.getName() + "\" has the transform " + grid.transform().mapType() +
                     "; only linear ones are read, resample it");
-  return held(grid.copyGrid());
+  const auto transform = std::const_pointer_cast<openvdb::math::Transform>(grid.transformPtr());
+  return held(grid.copyGridReplacingTransform(transform), affine_map_of(grid));
 }
 
 MemoryGrid sparse_grid(const SparseVolume& volume, const std::string& name, int64_t memory_limit_bytes) {
   initialize_openvdb();
-  return held(SparseGrid(volume, name).made(memory_limit_bytes));
+  return held(SparseGrid(volume, name).made(memory_limit_bytes), lattice_map(volume.step_world, volume.origin_world));
 }
 
 }  // namespace isoshell
