@@ -40,6 +40,7 @@ SPECIAL = {
     "output-format": "str",
     "sizing": "Any",
     "region-edge-length": "Mapping[Union[int, str], float]",
+    "save-level-set": "Union[bool, Path]",
     "stats": "Union[bool, Path]",
 }
 

@@ -19,10 +19,11 @@ from ._fill import Filled
 from ._isoshell import VERSION as __version__
 from ._isoshell import ErrorCode
 from ._labels import Labels
+from ._level_set import LevelSet
 from ._many import remesh_many
 from ._mesh_info import mesh_info
 from ._options import Options
-from ._remesh import estimate, remesh
+from ._remesh import estimate, level_set, remesh
 from ._report import report
 from ._result import Result
 from ._sequence import Frames, remesh_sequence
@@ -32,12 +33,12 @@ from ._stages import Stages
 if _TYPE_CHECKING:
     from . import usd as usd
 
-__all__ = ["Context", "Error", "ErrorCode", "Filled", "Frames", "Labels", "Mesh", "Options", "Points", "Progress", "Result", "RunWarning",
-           "Stages", "Volume", "__version__", "estimate", "mesh_info", "remesh", "remesh_many", "remesh_sequence",
-           "report"]
+__all__ = ["Context", "Error", "ErrorCode", "Filled", "Frames", "Labels", "LevelSet", "Mesh", "Options", "Points", "Progress", "Result", "RunWarning",
+           "Stages", "Volume", "__version__", "estimate", "level_set", "mesh_info", "remesh", "remesh_many",
+           "remesh_sequence", "report"]
 
-for _name in ("Context", "Error", "Filled", "Frames", "Labels", "Mesh", "Points", "Progress", "Result", "RunWarning", "Stages", "Volume",
-              "estimate", "mesh_info", "remesh", "remesh_many", "remesh_sequence", "report"):
+for _name in ("Context", "Error", "Filled", "Frames", "Labels", "LevelSet", "Mesh", "Points", "Progress", "Result", "RunWarning", "Stages", "Volume",
+              "estimate", "level_set", "mesh_info", "remesh", "remesh_many", "remesh_sequence", "report"):
     globals()[_name].__module__ = __name__
 
 

@@ -29,6 +29,15 @@ class Progress(float):
         return float(self), self.stage_fraction, self.seconds_left
 
 
+def memory_bytes_of(max_memory: Optional[Union[int, str]]) -> int:
+    """As the command takes it; 0 for none.
+
+    Raises:
+        Error: of code USAGE for a value that cannot be.
+    """
+    return _isoshell.memory_limit(keywords_of({"max_memory": max_memory}))
+
+
 OnProgress = Callable[[str, Progress], object]
 
 

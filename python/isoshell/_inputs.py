@@ -127,8 +127,13 @@ class Points:
         return f"<isoshell.Points: {rows_in(self.positions)} points{'' if self.normals is None else ', normals'}>"
 
 
+def is_vdb_grid(value: Any) -> bool:
+    """Whether it is a grid of OpenVDB's module, whichever that is: pyopenvdb or openvdb."""
+    return hasattr(value, "evalActiveVoxelBoundingBox") and hasattr(value, "transform")
+
+
 class Volume:
-    """Values on a regular lattice: a CT, a segmentation, a simulation.
+    """Values on a regular lattice: a CT, a segmentation, a simulation; as an array, or sparse.
 
     The surface is where the values, interpolated, are `iso`, which remesh() takes; of booleans the border of what is
     True. Without `iso` the values are distances: negative inside, or unsigned. NaN, and masked values, are not known:
@@ -137,7 +142,10 @@ class Volume:
 
     Args:
         values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
-            array begins with z, give values.transpose(2, 1, 0): that takes no copy.
+            array begins with z, give values.transpose(2, 1, 0): that takes no copy. With coordinates (K,) numbers. Or
+            what knows where it stands: a grid of OpenVDB's module (pyopenvdb, openvdb) or an isoshell.LevelSet, and
+            bytes, which are those of a .vdb or .nvdb file. Of a grid, level set or file of whole numbers the result has
+            regions.
         spacing: world units from a value to the next, above 0, one number or one an axis.
         origin: where values[0, 0, 0] stands, world units.
         velocities: (X, Y, Z, 3) world units a frame, used as float32: where the surface goes until the next frame of
@@ -153,10 +161,15 @@ class Volume:
         affine: (4, 4), from (i, j, k, 1) to world units, as nibabel has it; instead of spacing and origin. It may turn,
             skew and mirror: the surface is that of the array, moved by it. Errors of code USAGE are one of another
             shape, with a last row other than 0, 0, 0, 1, or without an inverse, and one beside spacing or origin.
+        coordinates: (K, 3) whole numbers: the voxel (i, j, k) that each of the values is of, each voxel once, in any
+            order; they may be negative. Nothing dense is made of them. Takes 2 KiB for each block of 8^3 that has one.
+        background: with coordinates, the value of all other voxels; without it the largest of the distances, with
+            `iso` 0. Without `iso`, where some values are negative, other voxels that these enclose are inside.
     """
 
     def __init__(self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, velocities: Any = None,
-                 sides: Optional[str] = None, periodic: str = "", affine: Any = None) -> None:
+                 sides: Optional[str] = None, periodic: str = "", affine: Any = None, coordinates: Any = None,
+                 background: Optional[float] = None) -> None:
         self.values = values
         self.spacing = spacing
         self.origin = origin
@@ -164,7 +177,11 @@ class Volume:
         self.sides = sides
         self.periodic = periodic
         self.affine = affine
+        self.coordinates = coordinates
+        self.background = background
 
     def __repr__(self) -> str:
+        if is_vdb_grid(self.values) or isinstance(self.values, (bytes, bytearray, memoryview)) or hasattr(self.values, "to_array"):
+            return f"<isoshell.Volume: {type(self.values).__name__}>"
         place = f"spacing {self.spacing}, origin {self.origin}" if self.affine is None else "with an affine"
         return f"<isoshell.Volume: {lattice_text(self.values)}, {place}>"

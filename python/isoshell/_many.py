@@ -11,7 +11,7 @@ from typing import (TYPE_CHECKING, Any, Generator, Generic, Iterable, Iterator, 
 from . import _isoshell
 from ._errors import Error
 from ._keywords import keywords_of
-from ._remesh import keywords_for, listener, result_of, takes_stats
+from ._remesh import keywords_for, listener, result_of, takes_true
 from ._inputs import Points, Volume
 from ._result import Result, checked
 from ._sources import SourceLike, opened, sizing_of, source_of
@@ -108,7 +108,7 @@ def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None,
             whatever is wrong with a source is one, and none is a ValueError.
     """
     given: dict[str, Any] = dict(options)
-    measure_all = takes_stats(given)
+    measure_all = takes_true(given, "stats")
     refused = [name for name in OF_ONE_RUN if given.get(name) is not None]
     if refused:
         raise Error(f"{', '.join(refused)}: not where many are meshed; leave it out", stage="options")

@@ -137,7 +137,7 @@ class Options(TypedDict, total=False):
     output_format: Optional[str]
     save_shell: Optional[Path]
     save_voronoi: Optional[Path]
-    save_level_set: Optional[Path]
+    save_level_set: Optional[Union[bool, Path]]
     level_set_band: Optional[float]
     split_regions: Optional[Path]
     recenter: Optional[Union[str, Sequence[float]]]

@@ -10,6 +10,7 @@ from ._context import Context, OnProgress, Progress
 from ._errors import Error, note, warn
 from ._exchange import format_of
 from ._inputs import Mesh
+from ._level_set import LevelSet
 from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._paths import path_text
 from ._result import Result, checked
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from ._options import Options
 
 STAGE_FILES = ("save_shell", "save_voronoi", "save_level_set")
+NOT_OF_LEVEL_SETS = ("save_shell", "save_voronoi", "save_level_set", "split_regions", "stop_after", "stats", "report", "grids",
+                     "require", "output_format", "recenter", "color_features")
 OF_OTHER_OUTPUTS = ("output_format", "stop_after", "color_features")
 
 
@@ -45,7 +48,8 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
         context: where to run; otherwise device, threads and max_memory say it.
         **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond
             what these say, progress may be a function, called as progress(stage, fraction) with a Progress of the whole
-            run, stats may be True, to measure everything without writing a file, and sizing may be an isoshell.Volume of
+            run, stats may be True, to measure everything without writing a file, save_level_set may be True, to have
+            result.level_set without one, and sizing may be an isoshell.Volume of
             edge lengths, or an array (K,) of one for each vertex of a mesh in memory, NaN where it says nothing: between
             them lengths are interpolated on the nearest triangle, which takes a search for each vertex of the sheet.
 
@@ -59,7 +63,8 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
     """
     given: dict[str, Any] = dict(options)
     source = with_faces(source, faces)
-    measure_all = takes_stats(given)
+    measure_all = takes_true(given, "stats")
+    keep_level_set = takes_true(given, "save_level_set")
     sizing = sizing_of(given)
     place, progress = settle(context, given)
     target = "" if output is None else path_text(output)
@@ -73,7 +78,8 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
     source = opened(source, given)
     keywords = keywords_for(source, given)
     start = source_of(source, sizing)
-    made = _isoshell.remesh(place, start, keywords, "" if is_ours else target, measure_all, progress, listener(given))
+    made = _isoshell.remesh(place, start, keywords, "" if is_ours else target, measure_all, keep_level_set, progress,
+                            listener(given))
     result = result_of(made, start, keywords, source, volumes)
     if is_ours:
         result.save(target, overwrite=given.get("force") is True, recenter=given.get("recenter"))
@@ -98,11 +104,35 @@ def estimate(source: SourceLike, *faces: Any, context: Optional[Context] = None,
     return _isoshell.estimate(place, source_of(source, sizing), keywords, listener(given))
 
 
-def takes_stats(options: dict[str, Any]) -> bool:
-    """Whether to measure everything without a file of statistics; True and False are no name of one."""
-    if not isinstance(options.get("stats"), bool):
+def level_set(source: SourceLike, *faces: Any, context: Optional[Context] = None, **options: Unpack[Options]) -> LevelSet:
+    """Signed distances around the solid that a surface bounds: of any surface that remesh() takes, also with holes.
+
+        distances = isoshell.level_set("scan.ply", resolution=512, level_set_band=3)
+        distances.coordinates, distances.values
+        distances.save("scan.vdb")
+
+    The grid is that of the options resolution, voxel_size or vertices, and no mesh is made. Arguments and errors are
+    those of remesh(), without output and what concerns meshes that are written.
+
+    Raises:
+        Error: of code USAGE, too, for a source with regions.
+    """
+    given: dict[str, Any] = dict(options)
+    refused = [name for name in NOT_OF_LEVEL_SETS if given.get(name)]
+    if refused:
+        raise Error(f"{', '.join(refused)}: not of a level set; leave it out", stage="options")
+    sizing = sizing_of(given)
+    place, progress = settle(context, given)
+    source = opened(with_faces(source, faces), given)
+    keywords = keywords_for(source, given)
+    return LevelSet(_isoshell.level_set(place, source_of(source, sizing), keywords, progress, listener(given)))
+
+
+def takes_true(options: dict[str, Any], name: str) -> bool:
+    """Whether an option that names a file is True, which is no name of one, for what needs none; False is no name, too."""
+    if not isinstance(options.get(name), bool):
         return False
-    return bool(options.pop("stats"))
+    return bool(options.pop(name))
 
 
 def stage_files(options: dict[str, Any]) -> list[str]:

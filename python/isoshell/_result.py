@@ -12,6 +12,7 @@ from ._exchange import format_of, to_package
 from ._inputs import Mesh, counts_text, regions_in
 from ._keywords import text_of
 from ._labels import label_of
+from ._level_set import LevelSet
 from ._paths import path_text
 from ._usd import Origin, is_usd
 
@@ -54,6 +55,7 @@ class Result:
         self._volumes = list(volumes)
         self._report: Optional[dict[str, Any]] = None
         self._attributes: Optional[list[tuple[str, str, Array, list[str]]]] = None
+        self._level_set: Optional[LevelSet] = None
 
     @property
     def vertices(self) -> Floats:
@@ -146,6 +148,16 @@ class Result:
             self._report = json.loads(self._made.statistics)
         assert self._report is not None
         return self._report
+
+    @property
+    def level_set(self) -> Optional[LevelSet]:
+        """Signed distances around the closed surface, after remesh(..., save_level_set=True); otherwise None.
+
+        They are those of the source, which isoshell.level_set() makes without a mesh. A result that is pickled loses it.
+        """
+        if self._level_set is None and self._made.level_set is not None:
+            self._level_set = LevelSet(self._made.level_set)
+        return self._level_set
 
     @property
     def digest(self) -> str:
@@ -255,8 +267,8 @@ class Result:
         return f"<isoshell.Result: {counts}>"
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the arrays of attributes, which are views of the mesh."""
-        return {**self.__dict__, "_attributes": None}
+        """Without the arrays of attributes, which are views of the mesh, and the level set."""
+        return {**self.__dict__, "_attributes": None, "_level_set": None}
 
     def _named_attributes(self) -> list[tuple[str, str, Array, list[str]]]:
         if self._attributes is None:

@@ -13,7 +13,7 @@ from ._isoshell import ErrorCode
 from ._keywords import keywords_of, text_of
 from ._paths import Path, path_text
 from ._remesh import (check_target, is_written_here, keywords_for, listener, result_of, settle, stage_files,
-                      takes_stats)
+                      takes_true)
 from ._result import Result, checked
 from ._sources import SourceLike, frame_source_of, opened, sizing_of
 from ._usd import file_of, is_usd
@@ -131,7 +131,7 @@ class _Sequence:
         self.errors: dict[Number, Error] = {}
         self.found: list[Number] = []
         self.count: Optional[int] = None  # of frames
-        self._measure_all = takes_stats(options)
+        self._measure_all = takes_true(options, "stats")
         self._sizing = sizing_of(options)
         self._place, self._progress = settle(context, options)
         self._options = options

@@ -14,6 +14,7 @@ from ._labels import INT32, Labels, label_of, lattice_of, values_of
 from ._lattice import origin_and_steps_of
 from ._paths import encodable, path_text
 from ._result import Result
+from ._sparse import is_sparse, places_itself, sparse_source_of
 from ._usd import is_usd
 
 if TYPE_CHECKING:
@@ -111,6 +112,8 @@ def with_faces(source: Any, faces: Sequence[Any]) -> Any:
 def source_of(given: Any, sizing: Any = None) -> Source:
     """The source that what is opened means, with a sizing field that is in memory."""
     source = _source_of(given)
+    if is_sparse(sizing):
+        raise Error("sizing is a sparse volume; give an isoshell.Volume of an array, or a .vdb file of edge lengths")
     if isinstance(sizing, Volume):
         source.set_sizing(floats_or_nan("sizing", sizing.values), *origin_and_steps_of(sizing))
     elif sizing is not None:
@@ -148,6 +151,8 @@ def _source_of(given: Any) -> Source:
         return Source.file(path_text(given))
     if isinstance(given, Points):
         return Source.points(*_points_of(given))
+    if is_sparse(given):
+        return sparse_source_of(given)
     if isinstance(given, Volume):
         if given.sides not in (None, "sample", "cell", "open"):
             raise Error(f'sides must be "sample", "cell" or "open", and is {given.sides!r}')
@@ -179,7 +184,7 @@ def sizing_of(options: dict[str, Any]) -> Any:
 
 def is_true_or_false(volume: Any) -> bool:
     """Whether it is a Volume of booleans, whose surface needs no isovalue."""
-    if not isinstance(volume, Volume):
+    if not isinstance(volume, Volume) or places_itself(volume.values):
         return False
     kind = getattr(volume.values, "dtype", None)  # "bool", "torch.bool"; arrays of devices are copied once, not here
     return str(kind).endswith("bool") if kind is not None else masked_array_of("volume", volume.values)[0].dtype.kind == "b"

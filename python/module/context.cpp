@@ -33,6 +33,9 @@ Place::Lease::Lease(Place& place) : place_(&place) {
 }
 
 void bind_context(nb::module_& m) {
+  m.def(
+      "memory_limit", [](const Keywords& keywords) { return arguments_of(keywords, "").max_memory_bytes; },
+      nb::arg("keywords"), "The option max_memory in bytes; 0 without it.");
   nb::class_<Place>(m, "Place", "The device, threads and memory of runs, one at a time.")
       .def(nb::init<const Keywords&>(), nb::arg("keywords"))
       .def("cancel", &Place::cancel)

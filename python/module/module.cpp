@@ -14,6 +14,7 @@
 #include "values/files.h"
 #include "values/keywords.h"
 #include "values/labels.h"
+#include "values/level_set.h"
 #include "values/result.h"
 #include "values/source.h"
 
@@ -29,6 +30,7 @@ NB_MODULE(_isoshell, m) {
   bind_labels(m);
   bind_source(m);
   bind_context(m);
+  bind_level_set(m);
   bind_result(m);
   bind_run(m);
   bind_sequence(m);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "module/watched.h"
+#include "values/level_set.h"
 #include "values/result.h"
 #include "values/text.h"
 
@@ -17,11 +18,22 @@ namespace isoshell::python {
 namespace {
 
 MadeResult remesh(Place& place, const Source& source, const Keywords& keywords, const std::string& output,
-                  bool measure_all, nb::object progress, nb::object tell) {
+                  bool measure_all, bool keep_level_set, nb::object progress, nb::object tell) {
   RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
   if (measure_all) requested.arguments.run.measures = Measures::all;
+  requested.arguments.run.keep_level_set = keep_level_set;
   return watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
     return made_of(run_from(read, request, context));
+  });
+}
+
+MadeLevelSet level_set(Place& place, const Source& source, const Keywords& keywords, nb::object progress,
+                       nb::object tell) {
+  RequestFromPython requested = request_from_python(source, keywords, "", std::move(progress), std::move(tell));
+  requested.arguments.run.stop_after = StopAfter::level_set;
+  requested.arguments.run.keep_level_set = true;
+  return watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
+    return MadeLevelSet{run_from(read, request, context).level_set};
   });
 }
 
@@ -46,7 +58,9 @@ nb::dict estimate(Place& place, const Source& source, const Keywords& keywords, 
 
 void bind_run(nb::module_& m) {
   m.def("remesh", remesh, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("output"),
-        nb::arg("measure_all"), nb::arg("progress").none(), nb::arg("tell"));
+        nb::arg("measure_all"), nb::arg("keep_level_set"), nb::arg("progress").none(), nb::arg("tell"));
+  m.def("level_set", level_set, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("progress").none(),
+        nb::arg("tell"));
   m.def(
       "estimate", estimate, nb::arg("place"), nb::arg("source"), nb::arg("keywords"), nb::arg("tell"),
       nb::sig("def estimate(place: Place, source: Source, keywords: collections.abc.Sequence[tuple[str, str | None]], "

@@ -20,6 +20,15 @@ def of_each_kind(array: "np.ndarray[Any, Any]") -> float:
     return float(again.vertices.mean()) + float(again.faces.max()) + float(estimated["memory_bytes"])
 
 
+def of_a_level_set(array: "np.ndarray[Any, Any]") -> int:
+    distances = isoshell.level_set("scan.ply", resolution=64, level_set_band=2.5)
+    distances.save(Path("a.vdb"), half=True, overwrite=True)
+    result = isoshell.remesh(isoshell.Volume(distances.values, coordinates=distances.coordinates, background=1,
+                                             affine=distances.transform), save_level_set=True)
+    isoshell.remesh(isoshell.Volume(distances)), isoshell.remesh(isoshell.Volume(b"bytes"))
+    return len(result.level_set or distances) + int(distances.to_array("1G").size)
+
+
 def of_a_stage(path: str) -> float:
     mesh = isoshell.usd.read(path, "/World/Mesh", time=24)
     result = isoshell.remesh(mesh, vertices=100)

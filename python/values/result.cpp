@@ -14,6 +14,7 @@
 #include "isoshell/run/run.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
+#include "values/level_set.h"
 #include "values/result_state.h"
 #include "values/text.h"
 
@@ -72,8 +73,8 @@ nb::tuple region(const MadeResult& result, int32_t label) {
 }  // namespace
 
 MadeResult made_of(RunResult result) {
-  return {std::move(result.mesh), statistics_json(result.record), std::move(result.gates),
-          std::move(result.missed_gates), std::move(result.made_of)};
+  return {std::move(result.mesh),         statistics_json(result.record), std::move(result.gates),
+          std::move(result.missed_gates), std::move(result.made_of),      std::move(result.level_set)};
 }
 
 void bind_result(nb::module_& m) {
@@ -91,6 +92,10 @@ void bind_result(nb::module_& m) {
           nb::for_getter(nb::sig("def regions(self, /) -> dict[str, typing.Any]")))
       .def_ro("statistics", &MadeResult::statistics)
       .def_prop_ro("digest", [](const MadeResult& r) { return digest_text(digest(r.mesh)); })
+      .def_prop_ro("level_set",
+                   [](const MadeResult& r) {
+                     return r.level_set ? std::optional<MadeLevelSet>(MadeLevelSet{r.level_set}) : std::nullopt;
+                   })
       .def_ro("gates", &MadeResult::gates)
       .def_ro("missed_gates", &MadeResult::missed_gates)
       .def("region", region, nb::arg("label"),

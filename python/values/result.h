@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct MadeResult {
   TriangleMesh mesh;
   std::string statistics;  ///< JSON
   std::vector<std::string> gates, missed_gates;
-  std::string frame_note;  ///< of a frame of a sequence: MeshWriteOptions::made_of
+  std::string frame_note;                          ///< of a frame of a sequence: MeshWriteOptions::made_of
+  std::shared_ptr<const LevelSet> level_set = {};  ///< where it was kept; not pickled
 };
 
 MadeResult made_of(RunResult result);

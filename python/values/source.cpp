@@ -24,6 +24,7 @@
 #include "isoshell/triangle_mesh.h"
 #include "values/arrays.h"
 #include "values/attributes.h"
+#include "values/grid_source.h"
 #include "values/labels.h"
 #include "values/result.h"
 #include "values/text.h"
@@ -157,6 +158,12 @@ Source volume(const AnyArray& values, const Triple& origin, const Steps& steps, 
           {}};
 }
 
+Source sparse(const AnyArray& coordinates, const AnyArray& values, double background, bool is_level_set,
+              const Triple& origin, const Steps& steps) {
+  return sparse_source(coordinates, values, background, is_level_set, point_of(origin),
+                       {point_of(steps[0]), point_of(steps[1]), point_of(steps[2])});
+}
+
 Source labels(const AnyArray& values, const LabelLattice& lattice) {
   const auto given = std::make_shared<LabelVolume>(label_volume_of(values, lattice));
   return {"",
@@ -259,6 +266,15 @@ void bind_source(nb::module_& m) {
           nb::sig("def volume(values: typing.Any, origin: collections.abc.Sequence[float], steps: "
                   "collections.abc.Sequence[collections.abc.Sequence[float]], sides: str, is_mask: bool, periodic: "
                   "collections.abc.Sequence[bool]) -> Source"))
+      .def_static(
+          "sparse", sparse, nb::arg("coordinates"), nb::arg("values"), nb::arg("background"), nb::arg("is_level_set"),
+          nb::arg("origin"), nb::arg("steps"),
+          nb::sig(
+              "def sparse(coordinates: typing.Any, values: typing.Any, background: float, is_level_set: bool, origin: "
+              "collections.abc.Sequence[float], steps: "
+              "collections.abc.Sequence[collections.abc.Sequence[float]]) -> Source"))
+      .def_static("vdb", vdb_source, nb::arg("name"), nb::arg("bytes"),
+                  nb::sig("def vdb(name: str, bytes: typing.Any) -> Source"))
       .def_static("labels", labels, nb::arg("values"), nb::arg("lattice"),
                   nb::sig("def labels(values: typing.Any, lattice: LabelLattice) -> Source"))
       .def("set_velocities_of_vertices", set_velocities_of_vertices, nb::arg("velocities"), nb::arg("vertices"),

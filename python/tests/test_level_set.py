@@ -1,0 +1,191 @@
+"""Level sets as sparse arrays, and sparse volumes as sources."""
+
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import isoshell
+import numpy as np
+import pytest
+from conftest import COMMAND, FOREVER, python_of_openvdb
+from isoshell import ErrorCode
+
+SMALL = {"vertices": 300, "resolution": 40}
+
+
+@pytest.fixture(scope="module")
+def distances(ball):
+    return isoshell.level_set(ball, resolution=40, level_set_band=3)
+
+
+@pytest.fixture(scope="module")
+def saved(distances, tmp_path_factory):
+    path = tmp_path_factory.mktemp("level_set") / "ball.vdb"
+    distances.save(path)
+    return path
+
+
+def moved_by(distances):
+    """Where the voxels of a level set are in the world."""
+    return distances.coordinates @ distances.transform[:3, :3].T + distances.transform[:3, 3]
+
+
+def test_a_level_set_has_the_distances_of_voxel_centres_from_the_surface(distances):
+    assert distances.coordinates.shape == (len(distances), 3) and distances.coordinates.dtype == np.int32
+    assert distances.values.shape == (len(distances),) and distances.values.dtype == np.float32
+    assert distances.background == pytest.approx(3 * distances.voxel_size) and distances.band == 3
+    exact = np.linalg.norm(moved_by(distances), axis=1) - 1
+    assert np.abs(distances.values - exact).max() < 0.02  # the ball has 24 segments around
+    assert np.abs(distances.values).max() < distances.background
+
+
+def test_its_file_is_the_one_that_the_command_writes(ball, distances, saved, tmp_path):
+    isoshell.remesh(ball, save_level_set=tmp_path / "run.vdb", **SMALL)
+    assert (tmp_path / "run.vdb").read_bytes() == saved.read_bytes()
+    with pytest.raises(isoshell.Error) as refused:
+        distances.save(saved)
+    assert refused.value.code == ErrorCode.UNWRITABLE_OUTPUT
+    distances.save(saved, overwrite=True)
+    distances.save(tmp_path / "half.vdb", grid="halves", half=True)
+    assert (tmp_path / "half.vdb").stat().st_size < saved.stat().st_size
+    assert b"halves" in (tmp_path / "half.vdb").read_bytes()
+
+
+def test_a_run_that_is_asked_to_keeps_its_level_set(ball, distances):
+    result = isoshell.remesh(ball, save_level_set=True, **SMALL)
+    assert np.array_equal(result.level_set.values, distances.values)
+    assert np.array_equal(result.level_set.coordinates, distances.coordinates)
+    assert pickle.loads(pickle.dumps(result)).level_set is None
+    assert isoshell.remesh(ball, **SMALL).level_set is None
+
+
+def test_as_an_array_it_has_a_sign_everywhere(distances):
+    dense = distances.to_array()
+    low = distances.coordinates.min(axis=0)
+    assert dense.shape == tuple(distances.coordinates.max(axis=0) - low + 1)
+    assert np.array_equal(dense[tuple((distances.coordinates - low).T)], distances.values)
+    places = np.stack(np.meshgrid(*(np.arange(n) for n in dense.shape), indexing="ij"), -1) + low
+    exact = np.linalg.norm(places @ distances.transform[:3, :3].T + distances.transform[:3, 3], axis=-1) - 1
+    sure = np.abs(exact) > 0.02
+    assert np.array_equal(dense[sure] < 0, exact[sure] < 0)
+    assert set(np.abs(dense[np.abs(exact) > distances.background + 0.02])) == {np.float32(distances.background)}
+
+
+def test_an_array_over_the_limit_is_refused_with_its_size(distances):
+    with pytest.raises(isoshell.Error) as refused:
+        distances.to_array(max_memory=10_000)
+    assert refused.value.code == ErrorCode.OUT_OF_MEMORY and "more than the limit" in str(refused.value)
+    with pytest.raises(isoshell.Error, match="the unit of a size"):
+        distances.to_array(max_memory="much")
+
+
+def test_options_of_meshes_and_regions_are_refused(ball):
+    with pytest.raises(isoshell.Error, match="stop_after, require: not of a level set"):
+        isoshell.level_set(ball, require="closed", stop_after="shell")
+    with pytest.raises(isoshell.Error, match="level_set_band"):
+        isoshell.level_set(ball, level_set_band=100)
+    with pytest.raises(isoshell.Error, match="one solid"):
+        isoshell.level_set(ball, regions="components")
+
+
+@pytest.mark.parametrize("features", ["auto", "off"])
+def test_a_level_set_in_memory_gives_the_mesh_of_its_file(distances, saved, features):
+    of_file = isoshell.remesh(saved, features=features, **SMALL)
+    order = np.random.default_rng(3).permutation(len(distances))
+    shuffled = {"values": distances.values[order], "coordinates": distances.coordinates[order].astype(np.int64),
+                "affine": distances.transform}
+    for volume in (isoshell.Volume(distances), isoshell.Volume(**shuffled, background=distances.background),
+                   isoshell.Volume(saved.read_bytes()), isoshell.Volume(memoryview(saved.read_bytes()))):
+        assert isoshell.remesh(volume, features=features, **SMALL).digest == of_file.digest, volume
+
+
+def test_without_a_background_it_is_the_largest_distance(distances):
+    volume = isoshell.Volume(distances.values, coordinates=distances.coordinates, affine=distances.transform)
+    digest = isoshell.remesh(isoshell.Volume(distances), **SMALL).digest
+    assert isoshell.remesh(volume, **SMALL).digest == digest
+
+
+def test_sparse_densities_and_masks_have_a_surface_where_they_end():
+    places = np.argwhere(np.linalg.norm(np.indices((21, 21, 21)) - 10, axis=0) <= 8).astype(np.int32) - 40
+    density = np.ones(len(places), np.float32)
+    of_values = isoshell.remesh(isoshell.Volume(density, coordinates=places, spacing=0.5), iso=0.5, **SMALL)
+    of_mask = isoshell.remesh(isoshell.Volume(density > 0, coordinates=places, spacing=0.5), **SMALL)
+    assert of_values.digest == of_mask.digest
+    assert np.allclose(of_values.vertices.mean(axis=0), -15, atol=0.1)
+
+
+def test_what_is_no_sparse_volume_is_refused(ball, distances):
+    three = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+
+    def refusal(*values, sizing=None, **arguments):
+        with pytest.raises(isoshell.Error) as refused:
+            isoshell.remesh(isoshell.Volume(*values, **arguments), sizing=sizing, **SMALL)
+        return str(refused.value)
+
+    assert "has 2 values and 3 voxels" in refusal([1.0, 2.0], coordinates=three)
+    assert "coordinates must be whole numbers" in refusal([1.0] * 3, coordinates=np.array(three) + 0.5)
+    assert "32 bits hold, and one is 4294967296" in refusal([1.0], coordinates=[[0, 2**32, 0]])
+    assert "is given twice, as number 0 and 2" in refusal([1.0] * 3, coordinates=[three[0], three[1], three[0]])
+    assert "is infinite" in refusal([1.0, np.inf, 2.0], coordinates=three)
+    assert "sides is of volumes that are arrays" in refusal([1.0] * 3, coordinates=three, sides="cell")
+    assert "leave out spacing, origin" in refusal(distances, spacing=2)
+    assert "background is inf" in refusal([1.0] * 3, coordinates=three, background=np.inf)
+    assert "volume: " in refusal(b"nothing that is known")
+    with pytest.raises(isoshell.Error, match="sizing is a sparse volume"):
+        isoshell.remesh(ball, sizing=isoshell.Volume(distances), **SMALL)
+
+
+def test_a_sparse_volume_is_meshed_without_its_box():
+    """Two balls far apart: their box would take 110 GiB as floats."""
+    at = np.indices((90, 90, 90)).reshape(3, -1).T - 45
+    values = np.linalg.norm(at, axis=1) - 40
+    near = np.abs(values) < 3
+    apart = np.array([3000, -3000, 3000])
+    volume = isoshell.Volume(np.tile(values[near], 2), coordinates=np.concatenate([at[near], at[near] + apart]), background=3)
+    result = isoshell.remesh(volume, vertices=1000, max_memory="1G")
+    second = result.vertices[:, 0] > 1000
+    for vertices in (result.vertices[~second], result.vertices[second] - apart):
+        assert np.abs(np.linalg.norm(vertices, axis=1) - 40).max() < 8
+
+
+SCRIPT = """
+import sys
+import isoshell
+try: import pyopenvdb as vdb
+except ImportError: import openvdb as vdb
+
+ball = vdb.createLevelSetSphere(10.0, (1, 2, 3), 0.5, 3.0)
+ball.name = "ball"
+fog = ball.deepCopy()
+fog.gridClass = vdb.GridClass.UNKNOWN
+labels = vdb.BoolGrid()
+small = {"vertices": 300, "resolution": 40, "device": "cpu"}
+for grid, options in ((ball, {}), (fog, {"iso": -0.5})):
+    vdb.write(sys.argv[1], grids=[grid])
+    of_file = isoshell.remesh(sys.argv[1], **small, **options)
+    of_grid = isoshell.remesh(isoshell.Volume(grid), **small, **options)
+    assert of_file.digest == of_grid.digest, (of_file, of_grid)
+    assert repr(isoshell.Volume(grid)) == "<isoshell.Volume: FloatGrid>"
+ball["label:3"] = "femur"
+assert isoshell.level_set(isoshell.Volume(ball), resolution=40).values.min() < 0
+for bad, words in ((isoshell.Volume(labels), "holds no distances"), (isoshell.Volume(ball, spacing=2), "leave out spacing")):
+    try: isoshell.remesh(bad, **small)
+    except isoshell.Error as error: assert words in str(error), error
+    else: raise AssertionError(words)
+print("same")
+"""
+
+
+def test_a_grid_of_openvdb_gives_the_mesh_of_its_file(tmp_path):
+    python = python_of_openvdb()
+    if python is None:
+        pytest.skip("needs the Python module of OpenVDB")
+    package = Path(isoshell.__file__).parents[1]
+    environment = {"PYTHONPATH": str(package), "PYTHONDONTWRITEBYTECODE": "1"}
+    can_import = subprocess.run([python, "-c", "import isoshell, numpy"], env=environment, capture_output=True, timeout=FOREVER)
+    if can_import.returncode:
+        pytest.skip("needs the module of OpenVDB in a Python that this package was built for")
+    ran = subprocess.run([python, "-c", SCRIPT, tmp_path / "grid.vdb"], env=environment, capture_output=True, text=True,
+                         timeout=FOREVER)
+    assert ran.stdout == "same\n", ran.stderr
