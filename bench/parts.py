@@ -29,7 +29,7 @@ def remesh(command, part, folder, options, limit):
 
 def row(part, stats, seconds):
     features, distance = stats["features"], stats["distance"]
-    lost = sum(curve["length"] for curve in features["lost"])
+    lost = features["lost_length"]
     kept = "all" if lost == 0 else f"{100 * (1 - lost / features['length']):.0f} %" if features["kept"] else "none"
     return (f"| {part.name} | {seconds:.2f} | {features['curves']} | {kept} | {stats['quality']['q_avg']:.3f} | "
             f"{stats['quality']['theta_min_deg']:.1f} | {stats['quality']['below_30_deg']} | "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <map>
@@ -26,6 +27,21 @@ struct LostCurve {
   WorldPoint at{0, 0, 0};   ///< where it begins
   std::string reason;
 };
+
+/// Curves that were lost for one reason.
+struct LostForReason {
+  std::string reason;
+  int64_t curves = 0;
+  double length_world = 0;  ///< of all of them
+};
+
+/// The reasons, those of the longest lengths first, at most so many. Cost: n log n.
+std::vector<LostForReason> lost_by_reason(const std::vector<LostCurve>& lost, size_t most);
+
+/// The longest curves, at most so many, of one length in their order. Cost: n log n.
+std::vector<LostCurve> longest_of(std::vector<LostCurve> lost, size_t most);
+
+double lost_length_world(const std::vector<LostCurve>& lost);
 
 /// What was kept of the input's creases and borders.
 struct FeatureReport {

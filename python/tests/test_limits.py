@@ -164,7 +164,7 @@ def test_angles_beside_creases(run, tmp_path, claim):
     assert run(source, *options, "--features", "off").status == 0
 
 
-@claims("the least creases, by turn times length, are left out, and each is named",
+@claims("the least creases, by turn times length, are left out, and the longest are named",
         "`--require features`")
 def test_lost_curves(run, tmp_path, claim):
     def cubes(n: int) -> Mesh:  # small ones on a large one
@@ -174,9 +174,11 @@ def test_lost_curves(run, tmp_path, claim):
     few = run(write_obj(tmp_path / "few.obj", *cubes(1)), "--vertices", 100, "--require", "features")
     assert few.status == 0 and few.stats["features"]["curves"] == 24
     many = run(write_obj(tmp_path / "many.obj", *cubes(6)), "--vertices", 100, "--require", "features")
-    lost = many.stats["features"]["lost"]
+    features = many.stats["features"]
     assert many.status == 6 and many.stats["features"]["curves"] == 12
-    assert len(lost) > 6 * 6 * 8 and all("edges are too long" in curve["reason"] for curve in lost)
+    assert features["lost_curves"] > 6 * 6 * 8 and len(features["lost"]) == 100
+    assert [of["curves"] for of in features["lost_by_reason"]] == [features["lost_curves"]]
+    assert all("edges are too long" in curve["reason"] for curve in features["lost"])
 
 
 @claims("**Edges of three faces**", "The result follows the surface around them, and a warning says where")

@@ -99,7 +99,7 @@ def test_everything_that_statistics_place_can_be_gone_to(tmp_path, ball):
     result = isoshell.remesh(ball, **SMALL)
     at, report = [0.0, 0.0, 1.0], result.report
     report["topology"].update(self_intersections=3, intersection_at=at)
-    report["features"]["lost"] = [{"index": 7, "kind": "crease", "length": 0.5, "at": at, "reason": "too short"}]
+    report["features"].update(lost_curves=1, lost=[{"index": 7, "kind": "crease", "length": 0.5, "at": at, "reason": "too short"}])
     report["quality"].update(below_30_deg=2, poor_angles=[{"degrees": 21.5, "at": at}, {"degrees": 11.5, "at": at}])
     report["input"]["united"].update(not_joined="crosses itself", not_joined_at=at)
     isoshell.report(result, tmp_path / "page.html", source=ball)

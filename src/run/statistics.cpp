@@ -211,31 +211,44 @@ Json distance_json(const std::optional<MeshDistance>& d) {
   return j;
 }
 
-/// Creases, seams, lines and borders of the input, and whether the result has them.
-Json features_json(const FeatureReport& f, double area_world) {
-  Json lost = Json::array();
-  for (const LostCurve& curve : f.lost)
+constexpr size_t kMostLost = 100;  ///< that are listed: large inputs lose thousands
+
+/// How many curves are lost for which reason, and the longest of them.
+void add_lost(const std::vector<LostCurve>& all, Json& j) {
+  Json reasons = Json::array(), lost = Json::array();
+  for (const LostForReason& of : lost_by_reason(all, kMostLost))
+    reasons.push_back({{"reason", of.reason}, {"curves", of.curves}, {"length", of.length_world}});
+  for (const LostCurve& curve : longest_of(all, kMostLost))
     lost.push_back({{"index", curve.index},
                     {"kind", curve.kind},
                     {"length", curve.length_world},
                     {"at", point(curve.at)},
                     {"reason", curve.reason}});
-  return {{"kept", f.kept},
-          {"curves", f.curves},
-          {"seams", f.seams},
-          {"lines", f.lines},
-          {"corners", f.corners},
-          {"patches", f.patches},
-          {"vertices", f.vertices},
-          {"segments", f.segments},
-          {"border_loops", f.border_loops},
-          {"length", f.length_world},
-          {"kept_length", f.kept_length_world},
-          {"passed_over", f.passed_over_world},
-          {"passes_over_much", f.passes_over_much(area_world)},
-          {"given_up", known(f.given_up)},
-          {"on_sheet", known(f.on_sheet)},
-          {"lost", lost}};
+  j["lost_curves"] = all.size();
+  j["lost_length"] = lost_length_world(all);
+  j["lost_by_reason"] = reasons;
+  j["lost"] = lost;
+}
+
+/// Creases, seams, lines and borders of the input, and whether the result has them.
+Json features_json(const FeatureReport& f, double area_world) {
+  Json j = {{"kept", f.kept},
+            {"curves", f.curves},
+            {"seams", f.seams},
+            {"lines", f.lines},
+            {"corners", f.corners},
+            {"patches", f.patches},
+            {"vertices", f.vertices},
+            {"segments", f.segments},
+            {"border_loops", f.border_loops},
+            {"length", f.length_world},
+            {"kept_length", f.kept_length_world},
+            {"passed_over", f.passed_over_world},
+            {"passes_over_much", f.passes_over_much(area_world)},
+            {"given_up", known(f.given_up)},
+            {"on_sheet", known(f.on_sheet)}};
+  add_lost(f.lost, j);
+  return j;
 }
 
 Json normals_json(const std::optional<MeshDistance>& d) {

@@ -142,6 +142,10 @@ TEST_CASE("features: requirements on normals and curves end with 6 where they ar
   CHECK(contains(lost.err, "gate failed: features: "));
   const Json j = Json::parse(folder.content("s.json"));
   CHECK(j["features"]["kept"] == false);
+  CHECK(j["features"]["lost_curves"] == 8);
+  CHECK(j["features"]["lost_by_reason"].size() == 1);
+  CHECK(j["features"]["lost_by_reason"][0]["curves"] == 8);
+  CHECK(j["features"]["lost_by_reason"][0]["length"] == j["features"]["lost_length"]);
   CHECK(j["features"]["lost"].size() == 8);
   CHECK(j["features"]["lost"][0]["reason"] == j["features"]["given_up"]);
   CHECK(j["features"]["lost"][0]["length"] > 0);

@@ -359,3 +359,22 @@ TEST_CASE("features: a needle that no crease has room on is meshed without them,
   }
   CHECK(digests.size() == 1);
 }
+
+TEST_CASE("features: of many lost curves the longest are listed, and reasons with all of their lengths", "[features]") {
+  const std::vector<LostCurve> lost = {{0, "crease", 1, {}, "short"},
+                                       {1, "crease", 3, {}, "long"},
+                                       {2, "seam", 1, {}, "short"},
+                                       {3, "line", 2, {}, "far"}};
+  CHECK(lost_length_world(lost) == 7);
+  const std::vector<LostCurve> longest = longest_of(lost, 3);
+  REQUIRE(longest.size() == 3);
+  CHECK(longest[0].index == 1);
+  CHECK(longest[1].index == 3);
+  CHECK(longest[2].index == 0);
+  CHECK(longest_of(lost, 9).size() == 4);
+  const std::vector<LostForReason> reasons = lost_by_reason(lost, 2);
+  REQUIRE(reasons.size() == 2);
+  CHECK(reasons[0].reason == "long");
+  CHECK(reasons[1].reason == "far");
+  CHECK(lost_by_reason(lost, 9).back().curves == 2);
+}

@@ -50,10 +50,11 @@ def _of_statistics(report: dict[str, Any], edge: float) -> Iterable[Kind]:
     yield _kind("Self-intersections of the result",
                 [Place(f"the first of {topology['self_intersections']} pairs", np.array(at), 6 * edge)] if at else [],
                 count=int(topology["self_intersections"]) if at else 0, tone="poor")
-    lost = sorted(report["features"]["lost"], key=lambda curve: -float(curve["length"]))
+    features = report["features"]
     yield _kind("Curves that were lost", [
         Place(f"{curve['kind']}, {number(curve['length'])} long: {curve['reason']}", np.array(curve["at"]),
-              max(6 * edge, float(curve["length"]))) for curve in lost if curve["at"]], tone="poor")
+              max(6 * edge, float(curve["length"]))) for curve in features["lost"] if curve["at"]],
+                count=int(features["lost_curves"]), tone="poor")
     poor = sorted(quality.get("poor_angles", []), key=lambda angle: float(angle["degrees"]))
     yield _kind("Poor angles", [Place(f"{angle['degrees']:.1f}°", np.array(angle["at"]), 6 * edge) for angle in poor],
                 count=max(len(poor), int(quality.get("below_30_deg", 0)) if poor else 0), tone="poor")

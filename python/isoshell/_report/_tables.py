@@ -87,7 +87,7 @@ def chips(report: dict[str, Any], missed: Sequence[str]) -> str:
         found.append((pairs == 0, words))
     if quality:
         found.append((quality["theta_min_deg"] >= 30, f"Smallest angle {quality['theta_min_deg']:.1f}°"))
-    curves, lost = report["features"]["curves"], len(report["features"]["lost"])
+    curves, lost = report["features"]["curves"], report["features"]["lost_curves"]
     if curves or lost:
         found.append((lost == 0, f"{counted(lost, 'curve')} lost" if lost else f"{counted(curves, 'curve')} kept"))
     if missed:
@@ -163,11 +163,12 @@ def certificate(report: dict[str, Any], before: Optional[Measures], after: Measu
         cards += card("Angle between normals, degrees", [
             ("result to input", (normals["to_input_mean_deg"], normals["to_input_max_deg"])),
             ("input to result", (normals["from_input_mean_deg"], normals["from_input_max_deg"]))], ("mean", "largest"))
-    if features["curves"] or features["lost"]:
+    if features["curves"] or features["lost_curves"]:
         cards += card("Curves", [
             ("curves of the input", (features["curves"],)), ("of them seams", (features["seams"],)),
             ("of them lines", (features["lines"],)), ("corners", (features["corners"],)),
-            ("patches", (features["patches"],)), ("length", (features["length"],)), ("lost", (len(features["lost"]),))])
+            ("patches", (features["patches"],)), ("length", (features["length"],)),
+            ("lost", (features["lost_curves"],)), ("length of those", (features["lost_length"],))])
     if report["borders"]:
         borders = report["borders"]
         cards += card("Borders", [

@@ -115,4 +115,33 @@ void give_up(const std::vector<LostCurve>& curves, const std::string& why, Featu
   report.patches = report.vertices = report.segments = report.border_loops = 0;
 }
 
+std::vector<LostForReason> lost_by_reason(const std::vector<LostCurve>& lost, size_t most) {
+  std::map<std::string, LostForReason> by_reason;
+  for (const LostCurve& curve : lost) {
+    LostForReason& of = by_reason[curve.reason];
+    of.reason = curve.reason;
+    ++of.curves;
+    of.length_world += curve.length_world;
+  }
+  std::vector<LostForReason> out;
+  for (auto& [reason, of] : by_reason) out.push_back(std::move(of));
+  std::stable_sort(out.begin(), out.end(),
+                   [](const LostForReason& a, const LostForReason& b) { return a.length_world > b.length_world; });
+  out.resize(std::min(out.size(), most));
+  return out;
+}
+
+std::vector<LostCurve> longest_of(std::vector<LostCurve> lost, size_t most) {
+  std::stable_sort(lost.begin(), lost.end(),
+                   [](const LostCurve& a, const LostCurve& b) { return a.length_world > b.length_world; });
+  lost.resize(std::min(lost.size(), most));
+  return lost;
+}
+
+double lost_length_world(const std::vector<LostCurve>& lost) {
+  double sum = 0;
+  for (const LostCurve& curve : lost) sum += curve.length_world;
+  return sum;
+}
+
 }  // namespace isoshell
