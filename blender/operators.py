@@ -152,6 +152,10 @@ class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator
     bl_label = "Volume to Isotropic Mesh (isoshell)"
     bl_options = {"REGISTER", "UNDO"}
 
+    # Of the last run, for the panel that changes it: then the mesh is active, not the volume.
+    meshed_grid: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    grid_class: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
     @classmethod
     def poll(cls, context):
         obj = context.active_object
@@ -165,8 +169,9 @@ class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator
 
         obj = context.active_object
         taken = volume_source.TakenVolume(obj, context.evaluated_depsgraph_get(), self.grid)
-        if self.properties.is_property_set("threshold") and not self.properties.is_property_set("use_threshold"):
-            self.use_threshold = True
+        if self.properties.is_property_set("iso") and not self.properties.is_property_set("use_iso"):
+            self.use_iso = True
+        self.meshed_grid, self.grid_class = taken.name, taken.grid_class
         words = self.keywords_of_labels() if taken.is_of_labels else self.keywords_of_values(taken.grid_class)
         self._name = obj.name
         return lambda run: taken.remesh(words | {"allow_intersections": True}, run, isoshell)
@@ -206,7 +211,7 @@ class OBJECT_OT_isoshell_volume_to_mesh(Run, options.Extract, bpy.types.Operator
 
     def draw(self, _context):
         self.layout.use_property_split = True
-        self.draw_extract(self.layout)
+        self.draw_extract(self.layout, (self.meshed_grid, self.grid_class) if self.grid_class else None)
 
 
 CLASSES = (OBJECT_OT_isoshell_remesh, OBJECT_OT_isoshell_volume_to_mesh)

@@ -5,7 +5,17 @@ import math
 
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-SURFACE_OF_CLASS = {"level set": 0.0, "fog volume": 0.1}  # the latter as of Blender's own modifier
+LEVEL_SET, FOG = "level set", "fog volume"  # classes of grids
+
+
+def names_of_grids(_options, context, text):
+    """What may follow a text of names with commas: every grid of the active volume that is not among them."""
+    obj = context.active_object
+    if obj is None or obj.type != "VOLUME" or not (obj.data.grids.is_loaded or obj.data.grids.load()):
+        return []
+    before = [name.strip() for name in text.split(",")[:-1]]
+    names = dict.fromkeys(grid.name for grid in obj.data.grids)
+    return [",".join([*before, name]) for name in names if name not in before]
 
 
 class Size:
@@ -85,13 +95,13 @@ class Remesh(Size):
 
 
 class Extract(Size):
-    use_threshold: BoolProperty(name="Use Threshold", default=False,
-                                description="The surface is where the values of the grid are the threshold. Otherwise "
-                                            "the grid's class says where: at 0 of a level set, at 0.1 of a fog volume. "
-                                            "A grid without a class holds distances")
-    threshold: FloatProperty(name="Threshold", default=SURFACE_OF_CLASS["fog volume"],
-                             description="Value of the grid on the surface")
-    grid: StringProperty(name="Grid", description="Name of the grid; empty: the active one")
+    use_iso: BoolProperty(name="Set Iso Value", default=False,
+                          description="The surface is where the values of the grid are the iso value, whatever its "
+                                      "class is. Otherwise that is so of fog volumes, and of a level set the surface "
+                                      "is where it is 0. A grid without a class holds distances")
+    iso: FloatProperty(name="Iso Value", default=0.1,  # as the threshold of Blender's own modifier
+                       description="Value of the grid on the surface: of a fog volume, or with Set Iso Value of any")
+    grid: StringProperty(name="Grid", search=names_of_grids, description="Name of the grid; empty: the active one")
     use_background: BoolProperty(name="Use Background", default=False,
                                  description="Of a grid of labels: what is no region has the label below. Otherwise it "
                                              "has the background value of the grid")
@@ -102,8 +112,9 @@ class Extract(Size):
     smoothing: FloatProperty(name="Smoothing", default=0.5, min=0, max=1,
                              description="Of a grid of labels: how far, in voxels, walls may leave the faces of their "
                                          "voxels to be smooth. At 0 they are these faces, flat, with creases")
-    grids: StringProperty(name="Values Of", description="Grids of the volume, as v,Cd,temperature, whose values are "
-                                                        "attributes of the mesh; all: all but the one that is meshed")
+    grids: StringProperty(name="Values Of", search=names_of_grids,
+                          description="Grids of the volume, as v,Cd,temperature, whose values are attributes of "
+                                      "the mesh; all: all but the one that is meshed")
     split_regions: BoolProperty(name="Split Regions", default=False,
                                 description="Of a grid of labels: an object for each region, closed, in a collection "
                                             "with the name of the volume. Otherwise one mesh has all walls once")
@@ -115,8 +126,8 @@ class Extract(Size):
         return super().keywords() | self._keywords_of_grids() | words
 
     def keywords_of_values(self, grid_class):
-        """Of isoshell.remesh, for a grid of values. What stands for no threshold is the library's to say."""
-        iso = self.threshold if self.use_threshold else SURFACE_OF_CLASS.get(grid_class)
+        """Of isoshell.remesh, for a grid of values. Where it has no class the library says where its surface is."""
+        iso = self.iso if self.use_iso or grid_class == FOG else 0.0 if grid_class == LEVEL_SET else None
         return super().keywords() | self._keywords_of_grids() | {"iso": iso}
 
     def _keywords_of_grids(self):
@@ -128,11 +139,13 @@ class Extract(Size):
         layout.prop(self, "grid")
         if grid:
             layout.label(text=f"{grid[0]}: {grid[1]}")
-        layout.prop(self, "use_threshold")
-        if self.use_threshold:
-            layout.prop(self, "threshold")
-        elif grid and grid[1] in SURFACE_OF_CLASS:
-            layout.label(text=f"Surface at {SURFACE_OF_CLASS[grid[1]]:g}")
+        is_fog, is_level_set = (grid is not None and grid[1] == name for name in (FOG, LEVEL_SET))
+        if not is_fog:
+            layout.prop(self, "use_iso")
+        if is_fog or self.use_iso:
+            layout.prop(self, "iso")
+        elif is_level_set:
+            layout.label(text="Surface at 0")
         layout.prop(self, "grids")
         labels = layout.box().column()
         labels.label(text="Grids of Labels")

@@ -64,6 +64,7 @@ class TakenVolume:
         name = _name_of(grids, grid_name)
         if name not in names:
             raise Refused(f"{obj.name} has no grid {name}; its grids are {', '.join(names)}")
+        self.name = name
         self.is_of_labels = grids[names.index(name)].data_type in OF_LABELS
         self._folder = tempfile.TemporaryDirectory()
         path = grids.frame_filepath

@@ -67,7 +67,7 @@ def test_a_volume_that_a_modifier_makes_becomes_a_mesh_that_is_even_in_the_world
     volume = imported(volume_of_ball(), tmp_path)
     volume.scale, volume.location = scale, (1, 2, 3)
     bpy.context.view_layer.update()
-    assert to_mesh(by="LENGTH", edge_length=0.2, threshold=0.5) == {"FINISHED"}
+    assert to_mesh(by="LENGTH", edge_length=0.2, iso=0.5) == {"FINISHED"}
     obj = bpy.context.object
     bpy.context.view_layer.update()
     assert obj.type == "MESH" and obj.matrix_world == volume.matrix_world
@@ -85,7 +85,7 @@ def test_a_volume_that_a_modifier_makes_becomes_a_mesh_that_is_even_in_the_world
 
 def test_a_volume_without_a_file_becomes_a_mesh():
     volume_of_ball()
-    assert to_mesh(vertices=500, threshold=0.5, grid="density") == {"FINISHED"}
+    assert to_mesh(vertices=500, iso=0.5, grid="density") == {"FINISHED"}
     vertices, faces = triangles_of(bpy.context.object)
     assert len(vertices) == 500
     assert_closed_manifold(faces, 500)
@@ -96,7 +96,7 @@ def test_values_of_grids_are_attributes_of_the_mesh(scale):
     volume = volume_of_ball()
     volume.scale = scale
     bpy.context.view_layer.update()
-    assert to_mesh(vertices=500, threshold=0.5, grids="density") == {"FINISHED"}
+    assert to_mesh(vertices=500, iso=0.5, grids="density") == {"FINISHED"}
     density = rows(bpy.context.object.data.attributes["density"].data, "value", 1)
     assert len(density) == 500 and abs(density.mean() - 0.5) < 0.1
 
@@ -143,18 +143,30 @@ def test_the_surface_of_a_level_set_is_where_its_distances_are_0(of_file, tmp_pa
     assert across(bpy.context.object) == pytest.approx(20, abs=0.03)
     if of_file:
         layout = panel_of(volume)
-        assert layout.labels[:2] == ["surface: level set", "Surface at 0"] and "threshold" not in layout.props
+        assert layout.labels[:2] == ["surface: level set", "Surface at 0"] and "iso" not in layout.props
     bpy.context.view_layer.objects.active = volume
-    assert to_mesh(vertices=3000, threshold=0.1) == {"FINISHED"}  # as a script asks for it
+    assert to_mesh(vertices=3000, iso=0.1) == {"FINISHED"}  # as a script asks for it
     assert across(bpy.context.object) == pytest.approx(20.2, abs=0.03)
 
 
 def test_the_surface_of_a_fog_volume_is_where_that_of_blender_is(tmp_path):
     volume = imported(volume_of_ball(), tmp_path)
-    assert panel_of(volume).labels[:2] == ["density: fog volume", "Surface at 0.1"]
+    panel = panel_of(volume)
+    assert panel.labels[0] == "density: fog volume" and "iso" in panel.props and "use_iso" not in panel.props
     sizes = []
-    for words in ({}, {"threshold": 0.1}, {"threshold": 0.9}):
+    for words in ({}, {"iso": 0.1}, {"iso": 0.9}):
         bpy.context.view_layer.objects.active = volume
         assert to_mesh(vertices=500, **words) == {"FINISHED"}
         sizes.append(across(bpy.context.object))
     assert sizes[0] == sizes[1] > sizes[2]
+
+
+def test_grids_of_the_volume_are_offered_by_name(tmp_path):
+    from bl_ext.user_default.isoshell.options import names_of_grids
+
+    volume = imported(volume_of_ball(), tmp_path)
+    assert names_of_grids(None, bpy.context, "") == names_of_grids(None, bpy.context, "den") == ["density"]
+    assert names_of_grids(None, bpy.context, "v, ") == ["v,density"]
+    assert names_of_grids(None, bpy.context, "density,") == []
+    bpy.context.view_layer.objects.active = None
+    assert volume and names_of_grids(None, bpy.context, "") == []
