@@ -74,6 +74,27 @@ Numbers distances_to(const AnyArray& points, const AnyArray& vertices, const Any
   return {kept.data(), {kept.size()}, owner};
 }
 
+nb::tuple side_of(const OneSidedDistance& distance, const NormalDeviation& normals) {
+  return nb::make_tuple(distance.mean, distance.rms, distance.max, normals.mean_deg, normals.max_deg);
+}
+
+nb::tuple surface_distance(const AnyArray& vertices, const AnyArray& faces, const AnyArray& reference_vertices,
+                           const AnyArray& reference_faces) {
+  TriangleMesh mesh, reference;
+  mesh.vertices = points_of("vertices", vertices);
+  mesh.triangles = triangles_of("faces", faces, mesh.vertices.size());
+  reference.vertices = points_of("reference_vertices", reference_vertices);
+  reference.triangles = triangles_of("reference_faces", reference_faces, reference.vertices.size());
+  MeshDistance d;
+  {
+    const nb::gil_scoped_release released;
+    Context context;
+    d = measure_distance(mesh, reference, context);
+  }
+  return nb::make_tuple(d.diagonal, side_of(d.to_reference, d.normal_to_reference),
+                        side_of(d.from_reference, d.normal_from_reference));
+}
+
 int command(const std::vector<std::string>& arguments, const nb::object& write_report, const std::string& also_reads,
             const std::string& also_writes) {
   std::vector<const char*> words;
@@ -99,6 +120,14 @@ void bind_report(nb::module_& m) {
   m.def("distances", distances_to, nb::arg("points"), nb::arg("vertices"), nb::arg("faces"),
         nb::sig("def distances(points: typing.Any, vertices: typing.Any, faces: typing.Any) -> typing.Any"),
         "Of each point to the nearest one of the mesh.");
+  m.def(
+      "surface_distance", surface_distance, nb::arg("vertices"), nb::arg("faces"), nb::arg("reference_vertices"),
+      nb::arg("reference_faces"),
+      nb::sig("def surface_distance(vertices: typing.Any, faces: typing.Any, reference_vertices: typing.Any, "
+              "reference_faces: typing.Any) -> tuple[float, tuple[float, float, float, float, float], "
+              "tuple[float, float, float, float, float]]"),
+      "Between two meshes: the diagonal of the reference, and to it and from it the mean, the root of the mean square "
+      "and the largest distance, in world units, and the mean and largest angle between normals, in degrees.");
   m.def("command", command, nb::arg("arguments"), nb::arg("write_report").none(), nb::arg("also_reads"),
         nb::arg("also_writes"),
         nb::sig("def command(arguments: collections.abc.Sequence[str], write_report: typing.Any, also_reads: str, "

@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import isoshell
 import numpy as np
@@ -58,6 +59,48 @@ def test_it_shows_both_meshes_and_the_numbers_of_the_run(page, holed):
     for expected in ("Remeshed to 150 vertices", "Closed 2-manifold", "No self-intersections", "genus=0",
                      "holes capped 1", "Distance between", "All statistics"):
         assert expected in words, expected
+
+
+def test_distances_name_what_they_are_to_and_are_all_to_the_same(page, holed, tmp_path):
+    within = re.compile(r"Within (\S+) % of the diagonal of (the input as it was read|the repaired input)")
+    percent, reference = within.search(words_of(page)).groups()
+    assert reference == "the input as it was read"
+    largest = float(json_of(page, "data")["largest"])
+    diagonal = np.linalg.norm(np.ptp(holed[0][np.unique(holed[1])], axis=0))
+    assert largest * 0.999 <= float(percent) / 100 * diagonal < 0.52  # vertices alone; the middle of the cap
+    assert "Distance between the result and the input as it was read" in words_of(page)
+    assert "Farthest from the input as it was read" in words_of(page)
+    result = isoshell.remesh(holed, stats=True, **SMALL)
+    isoshell.report(result, tmp_path / "alone.html")
+    alone = within.search(words_of((tmp_path / "alone.html").read_text()))
+    assert alone[2] == "the repaired input" and float(alone[1]) < float(percent)  # the cap is no distance from that
+
+
+@pytest.mark.parametrize("path, up", [("scan.ply", "z"), ("part.STL", "z"), ("a.b/tree.obj", "y"), ("car.glb", "y"),
+                                      ("fluid.vdb:surface", "y"), ("points.xyz", "z")])
+def test_the_axis_that_is_up_is_that_of_the_format(path, up):
+    assert up_axis_of(path, None) == up
+
+
+def test_the_axis_that_is_up_is_what_a_scene_says():
+    assert up_axis_of("scene.usd", SimpleNamespace(up_axis="Z")) == "z"
+    assert up_axis_of("scene.usd", SimpleNamespace(up_axis="Y")) == "y"
+
+
+def up_axis_of(path, origin):
+    from isoshell._report._page import _up_axis
+
+    return _up_axis(SimpleNamespace(origin=origin, report={"input": {"path": path}, "options": {}}))
+
+
+def test_regions_shut_in_others_are_pulled_out_of_them(tmp_path):
+    labels = np.zeros((18, 18, 18), np.uint8)
+    labels[1:17, 1:17, 1:17], labels[4:14, 4:14, 4:14], labels[7:11, 7:11, 7:11] = 1, 2, 3
+    source = isoshell.Labels(labels)
+    isoshell.report(isoshell.remesh(source, vertices=600), tmp_path / "page.html", source=source)
+    ways = np.array([region["away"] for region in json_of((tmp_path / "page.html").read_text(), "data")["regions"]])
+    assert np.allclose(ways[0], 0, atol=0.05) and np.allclose(ways[:, 1:], 0, atol=0.05)
+    assert ways[1, 0] > 0.8 and ways[2, 0] > ways[1, 0] + 0.4  # the widths of what is around, of 1 in all
 
 
 def test_places_are_where_things_happened(page):

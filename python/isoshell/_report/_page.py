@@ -27,7 +27,7 @@ MOST_FACES = 120_000  # of a mesh that is drawn: the page stays below 8 MB
 PATCH_COLORS = 8  # of page.js
 MODES = (("shape", "Shape"), ("deviation", "Deviation"), ("quality", "Quality"), ("valence", "Valence"),
          ("gaps", "Gaps and borders"), ("creases", "Creases"))
-Z_IS_UP = (".stl", ".xyz", ".pcd")  # parts and surveys; all others come with y up more often
+Y_IS_UP = (".glb", ".gltf", ".obj", ".vdb", ".nvdb")  # by specification or habit; parts, scans and surveys have z up
 
 
 def page(result: Result, source: Optional[tuple[Array, Array, Array]], k3d: Path) -> str:
@@ -37,6 +37,7 @@ def page(result: Result, source: Optional[tuple[Array, Array, Array]], k3d: Path
     before, of_before = _before(source)
     if before is not None:
         _measure_distances(before, after)
+    distances = _distances(report, before, after)
     edge = float(of_after["lengths"].mean()) if len(of_after["lengths"]) else 1.0
     kinds = kinds_of(report, before, after, edge)
     name = Path(report["input"]["path"]).name or "surface"
@@ -50,16 +51,16 @@ def page(result: Result, source: Optional[tuple[Array, Array, Array]], k3d: Path
         "heading": html.escape(name),
         "subtitle": f"Remeshed to {tables.text(counts['vertices'])} vertices and "
                     f"{tables.text(counts['triangles'])} triangles",
-        "chips": tables.chips(report, result._made.missed_gates),
+        "chips": tables.chips(report, result._made.missed_gates, distances),
         "modes": "".join(_radio("mode", key, words, key == first) for key, words in modes),
-        "ups": "".join(_radio("up", axis, axis.upper(), axis == _up_axis(name)) for axis in "xyz"),
+        "ups": "".join(_radio("up", axis, axis.upper(), axis == _up_axis(result)) for axis in "xyz"),
         "panes": "".join(_pane(side, name, surface, report) for side, surface in drawn),
         "thinned": " ".join(_how_many(side, surface, shown[side]) for side, surface in drawn).strip(),
         "places": tables.places(kinds),
         "key": _key(before is not None),
         "charts": _charts(report, of_before, of_after),
         "certificate": tables.gates(result._made.gates, result._made.missed_gates)
-                       + tables.regions(report) + tables.certificate(report, of_before, of_after),
+                       + tables.regions(report) + tables.certificate(report, of_before, of_after, distances),
         "changes": tables.changes(report),
         "warnings": tables.warnings(report),
         "json": html.escape(json.dumps(report, indent=1, ensure_ascii=False)),
@@ -132,6 +133,19 @@ def _measure(surface: Surface) -> tuple[Edges, tables.Measures]:
 def _measure_distances(before: Surface, after: Surface) -> None:
     for one, other in ((before, after), (after, before)):
         one.of_vertices["deviation"] = _isoshell.distances(one.vertices, other.vertices, other.faces)
+
+
+def _distances(report: dict[str, Any], before: Optional[Surface], after: Surface) -> Optional[tables.Distances]:
+    """A run measures to the repaired input; the page draws and lists the input as it was read, so that it is here."""
+    if not report["distance"]:
+        return None
+    if before is not None:
+        measures = _isoshell.surface_distance(after.vertices, after.faces, before.vertices, before.faces)
+        return tables.Distances("the input as it was read", *measures)
+    distance, normals = report["distance"], report["normals"]
+    to, back = ([*(distance[f"{side}_{name}"] for name in ("mean", "rms", "max")),
+                 *(normals[f"{side}_{name}_deg"] for name in ("mean", "max"))] for side in ("to_input", "from_input"))
+    return tables.Distances("the repaired input", distance["diagonal"], to, back)
 
 
 def _data(shown: Dict[str, Surface], kinds: List[Kind], drawn: list[tuple[str, Surface]],
@@ -224,8 +238,14 @@ def _radio(group: str, key: str, words: str, checked: bool) -> str:
             f"<span>{words}</span></label>")
 
 
-def _up_axis(name: str) -> str:
-    return "z" if Path(name).suffix.lower() in Z_IS_UP else "y"
+def _up_axis(result: Result) -> str:
+    """What a scene says; else by the format, and that of arrays is z."""
+    if result.origin is not None:
+        return str(result.origin.up_axis).lower()
+    file = str(result.report["input"]["path"]).lower()
+    given = f".{result.report['options'].get('input_format') or ''}"
+    is_y = given in Y_IS_UP or re.search("(%s)(:[^:/]*)?$" % "|".join(map(re.escape, Y_IS_UP)), file)
+    return "y" if is_y else "z"
 
 
 def _packed(values: Any) -> str:

@@ -97,7 +97,7 @@ def _of_input(before: Surface, after: Surface, edge: float) -> Iterable[Kind]:
             for line, length in _chains(before, edges.ends[edges.faces > 2])])
     yield _kind("Pieces of the input that are not in the result", list(_left_out(before, edges, edge)))
     yield _kind("Farthest from the result", list(_farthest(before, edge)))
-    yield _kind("Farthest from the input", list(_farthest(after, edge)))
+    yield _kind("Farthest from the input as it was read", list(_farthest(after, edge)))
 
 
 def _chains(surface: Surface, ends: Array) -> Iterable[tuple[Array, float]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import colorsys
 from dataclasses import dataclass
-from typing import List, Optional
+from typing import Dict, List, Optional
 
 import numpy as np
 
@@ -20,7 +20,7 @@ MOST = 2**16 - 1  # that numbers of two bytes tell apart; a result of more is sh
 class Region:
     words: str
     color: str  # as CSS has it
-    away: Array  # from the middle of all to its own, world units
+    away: Array  # how far it is moved where regions are pulled apart, world units
 
 
 def numbered(result: Result, after: Surface, before: Optional[Surface]) -> List[Region]:
@@ -39,9 +39,58 @@ def numbered(result: Result, after: Surface, before: Optional[Surface]) -> List[
     for surface in surfaces:
         pairs = _pairs(surface)
         surface.regions = np.where(pairs == background, 0, np.searchsorted(labels, pairs) + 1)
+    ways = _ways_apart(surfaces, after, len(labels))
+    return [Region(_words(result, int(label)), _color(i), ways[i]) for i, label in enumerate(labels)]
+
+
+def _ways_apart(surfaces: List[Surface], after: Surface, count: int) -> Array:
+    """Of each region: from the middle of all to its own, and out of the regions that it is shut in, along x."""
+    centres = [_centres(surfaces, number) for number in range(1, count + 1)]
     middle = _middle(after.vertices[after.faces].mean(axis=1))
-    return [Region(_words(result, int(label)), _color(i), _middle(_centres(surfaces, i + 1)) - middle)
-            for i, label in enumerate(labels)]
+    ways = np.array([_middle(points) - middle for points in centres]).reshape(-1, 3)
+    around = _shut_in(np.concatenate([_pairs(surface) for surface in surfaces]), count)
+    for number in range(1, count + 1):
+        outer = around[number]
+        while outer > 0:
+            ways[number - 1, 0] += float(np.ptp(centres[outer - 1][:, 0]))
+            outer = around[outer]
+    return ways
+
+
+def _shut_in(pairs: Array, count: int) -> List[int]:
+    """Of 0 and each region the region that every way to it from 0 leads through, 0 for none: its immediate dominator
+    in the graph of regions that share walls (Cooper, Harvey, Kennedy, 2001)."""
+    beside: List[List[int]] = [[] for _ in range(count + 1)]
+    for one, other in np.unique(np.sort(pairs, axis=1), axis=0).tolist():
+        beside[one].append(other)
+        beside[other].append(one)
+    order, rank = [0], {0: 0}  # breadth first
+    for region in order:
+        for other in beside[region]:
+            if other not in rank:
+                rank[other] = len(order)
+                order.append(other)
+    around = {0: 0}
+    changed = True
+    while changed:
+        changed = False
+        for region in order[1:]:
+            known = [other for other in beside[region] if other in around and other != region]
+            common = known[0]
+            for other in known[1:]:
+                common = _common(common, other, around, rank)
+            changed |= around.get(region) != common
+            around[region] = common
+    return [around.get(region, 0) for region in range(count + 1)]
+
+
+def _common(one: int, other: int, around: Dict[int, int], rank: Dict[int, int]) -> int:
+    """The innermost region around both, each of which is around itself."""
+    while one != other:
+        if rank[one] < rank[other]:
+            one, other = other, one
+        one = around[one]
+    return one
 
 
 def _pairs(surface: Surface) -> Array:

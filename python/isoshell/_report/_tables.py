@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+from dataclasses import dataclass
 from typing import Any, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -71,9 +72,29 @@ def card(title: str, rows: Sequence[Row], columns: Sequence[str] = ()) -> str:
     return f'<div class="card"><h3>{html.escape(title)}</h3><table>{head}{body}</table></div>'
 
 
-def chips(report: dict[str, Any], missed: Sequence[str]) -> str:
+@dataclass
+class Distances:
+    """Between the result and a surface, both ways, each as (mean, rms, largest, mean and largest angle of normals).
+
+    Distances are in world units, angles in degrees.
+    """
+
+    reference: str  # what the surface is, in words
+    diagonal: float
+    to_reference: Sequence[float]
+    from_reference: Sequence[float]
+
+    def ways(self) -> Tuple[Tuple[str, Sequence[float]], ...]:
+        return ("result to input", self.to_reference), ("input to result", self.from_reference)
+
+    def percent(self, distance: float) -> Optional[float]:
+        """Of the diagonal."""
+        return 100 * distance / self.diagonal if self.diagonal > 0 else None
+
+
+def chips(report: dict[str, Any], missed: Sequence[str], distances: Optional[Distances]) -> str:
     """The verdict in a line."""
-    topology, quality, distance = report["topology"], report["quality"], report["distance"]
+    topology, quality = report["topology"], report["quality"]
     borders = topology["boundary_loops"] or 0
     found: List[Tuple[bool, str]] = []
     if report["regions"]:
@@ -93,8 +114,10 @@ def chips(report: dict[str, Any], missed: Sequence[str]) -> str:
     if missed:
         found.append((False, f"{counted(len(missed), 'requirement')} missed"))
     made = "".join(f'<li class="{"met" if met else "missed"}">{html.escape(words)}</li>' for met, words in found)
-    if distance:
-        made += f"<li>Within {number(distance['pct_of_diagonal']['hausdorff'])} % of the diagonal</li>"
+    if distances and distances.diagonal > 0:
+        largest = max(distances.to_reference[2], distances.from_reference[2])
+        percent = number(100 * largest / distances.diagonal)
+        made += f"<li>Within {percent} % of the diagonal of {distances.reference}</li>"
     return made
 
 
@@ -138,7 +161,8 @@ def gates(asked: Sequence[str], missed: Sequence[str]) -> str:
     return f'<div class="card"><h3>Requirements</h3><table>{body}</table></div>' if rows else ""
 
 
-def certificate(report: dict[str, Any], before: Optional[Measures], after: Measures) -> str:
+def certificate(report: dict[str, Any], before: Optional[Measures], after: Measures,
+                distances: Optional[Distances]) -> str:
     """Topology, shape, distances, curves and borders."""
     source, topology, features = report["input"], report["topology"], report["features"]
     from_input = report["counts"]["sites"] is not None and source["vertices"] is not None
@@ -152,17 +176,13 @@ def certificate(report: dict[str, Any], before: Optional[Measures], after: Measu
             ("vertices of several fans", None, "nonmanifold_vertices"),
             ("pairs of intersecting triangles", None, "self_intersections"))], sides)
     cards += card("Shape", [(name, (_of(before, measure), _of(after, measure))) for name, measure in MEASURES], sides)
-    if report["distance"]:
-        world, percent = report["distance"], report["distance"]["pct_of_diagonal"]
-        cards += card("Distance between the result and the repaired input", [
-            (f"{name}, {way}", (world[f"{start}_{name}"], percent[f"{start}_{name}"]))
-            for way, start in (("result to input", "to_input"), ("input to result", "from_input"))
-            for name in ("mean", "rms", "max")], ("world units", "% of diagonal"))
-    if report["normals"]:
-        normals = report["normals"]
-        cards += card("Angle between normals, degrees", [
-            ("result to input", (normals["to_input_mean_deg"], normals["to_input_max_deg"])),
-            ("input to result", (normals["from_input_mean_deg"], normals["from_input_max_deg"]))], ("mean", "largest"))
+    if distances:
+        cards += card(f"Distance between the result and {distances.reference}", [
+            (f"{name}, {way}", (side[i], distances.percent(side[i])))
+            for way, side in distances.ways() for i, name in enumerate(("mean", "rms", "max"))],
+            ("world units", "% of diagonal"))
+        cards += card(f"Angle between normals of the result and {distances.reference}, degrees",
+                      [(way, tuple(side[3:])) for way, side in distances.ways()], ("mean", "largest"))
     if features["curves"] or features["lost_curves"]:
         cards += card("Curves", [
             ("curves of the input", (features["curves"],)), ("of them seams", (features["seams"],)),
@@ -171,7 +191,7 @@ def certificate(report: dict[str, Any], before: Optional[Measures], after: Measu
             ("lost", (features["lost_curves"],)), ("length of those", (features["lost_length"],))])
     if report["borders"]:
         borders = report["borders"]
-        cards += card("Borders", [
+        cards += card("Borders, those of the input once it is repaired", [
             ("loops", (borders["input_loops"], borders["loops"])),
             ("length", (borders["input_length"], borders["length"])),
             ("farthest from the other's", (borders["from_input_max"], borders["to_input_max"]))], sides)

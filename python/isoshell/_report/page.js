@@ -56,7 +56,7 @@
   const valenceColor = (side, i) => number(side.fewer[i] ? FEWER[side.fewer[i]] : MORE[side.more[i]]);
 
   const hidden = new Set();  // regions, by number
-  const apart = () => Number(document.getElementById('apart').value) / 50;  // 1: twice as far from the middle
+  const apart = () => Number(document.getElementById('apart').value) / 50;  // times the way of each region
 
   // The closed surface of each region that is shown, moved away from the middle: the faces behind which it lies, and
   // those in front of which it does, turned. Faces are drawn from outside alone, so that of two in one place one shows.
@@ -95,7 +95,7 @@
     deviation: {
       has: (side) => side.deviation,
       paint: (side) => byVertex(side.deviation, HOT, 255),
-      legend: () => 'Distance to the other mesh, world units, the input as it was read: 0 '
+      legend: () => 'Distance of vertices to the other mesh, world units, the input as it was read: 0 '
           + `${bar(HOT)} ${data.top} and more; largest ${data.largest}`,
     },
     quality: {
@@ -271,7 +271,8 @@
     const sides = Object.fromEntries(Object.entries(data.sides).map(([name, packed]) => [name, readSide(packed)]));
     const curves = sides.after.curve ? sides.after : null;  // the result's lie on the input, too
     const views = Object.entries(sides).map(([name, side]) => new View(library, name, side, curves));
-    const points = Object.values(sides).flatMap((side) => someOf(side.positions, 3000));
+    const pointsOf = (shown) => Object.values(sides).flatMap((side) => someOf(shown(side).positions, 3000));
+    const together = pointsOf((side) => side);
 
     let following = false;
     const look = (to) => {
@@ -289,8 +290,9 @@
     }
     const wide = () => {
       const {clientWidth, clientHeight} = document.querySelector('.view');
-      const reach = checked('mode') === 'regions' ? 1 + apart() : 1;
-      look(camera(middle, axes().front, reach * distanceThatShows(points, axes(), clientWidth / clientHeight)));
+      const isApart = checked('mode') === 'regions' && apart() > 0;
+      const points = isApart ? pointsOf((side) => (side.regions ? pulled(side) : side)) : together;
+      look(camera(middle, axes().front, distanceThatShows(points, axes(), clientWidth / clientHeight)));
     };
     const paint = () => {
       const mode = checked('mode');
