@@ -1,6 +1,7 @@
 """Stages of USD as sources, and results as stages."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -8,6 +9,7 @@ import sys
 import isoshell
 import numpy as np
 import pytest
+from conftest import SOURCE
 from isoshell import ErrorCode
 
 pytest.importorskip("pxr", reason="needs usd-core: pip install usd-core")
@@ -268,6 +270,24 @@ def test_one_stage_binds_mesh_shell_and_voronoi_volumes_at_one_place(tmp_path, b
         assert np.all(low <= points.min(axis=0)) and np.all(high >= points.max(axis=0))
         assert np.all(high - low <= np.ptp(points, axis=0) + 8 * frame["voxel_size"])
     assert np.array_equal(points, result.vertices.astype(np.float32))
+
+
+def test_a_level_set_is_a_volume_that_no_validator_complains_of(tmp_path, ball, monkeypatch):
+    """As docs/guide/pipelines.md has it: beside its mesh, and alone by OpenUSD's own module."""
+    monkeypatch.chdir(tmp_path)
+    page = (SOURCE / "docs/guide/pipelines.md").read_text()
+    isoshell.remesh(ball, output="scan.ply", **SMALL)
+    line = re.search(r"^    isoshell (scan.ply scan.usda .*)$", page, re.M)[1]
+    done = subprocess.run([sys.executable, "-m", "isoshell", *line.split()], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    exec(re.search(r"```python\n(.*?)```", page, re.S)[1], {})
+    for name, prim in (("scan", "scan_distances"), ("volume", "scan")):
+        assert complaints(tmp_path / f"{name}.usda") == []
+        stage = Usd.Stage.Open(f"{name}.usda")
+        volume = UsdVol.Volume.Get(stage, f"/World/{prim}")
+        asset = UsdVol.OpenVDBAsset.Get(stage, volume.GetFieldPath("surface"))
+        assert (asset.GetFieldNameAttr().Get(), asset.GetFieldClassAttr().Get()) == ("surface", "levelSet")
+        assert os.path.samefile(asset.GetFilePathAttr().Get().resolvedPath, "scan_distances.vdb")
 
 
 def test_the_command_takes_stages(stage_of, tmp_path, ball):
