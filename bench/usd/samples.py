@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Memory and time of a stage of USD with many samples: usd_samples.py SOURCE OUTPUT.usdc SAMPLES [VERTICES=50000]
+"""Memory and time of a stage of USD with many samples: samples.py SOURCE OUTPUT.usdc SAMPLES [VERTICES=50000]
 
 A result is made once, and every sample is that with other points and another order of faces, so that none is like another.
 """

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Where readers of USD see the mesh and the volumes of a stage that `isoshell.usd.write` made.
 
-    bench/usd_places.py STAGE...             in a Python with usd-core: extents, points, fields; what validators say
-    bench/usd_places.py --blender STAGE...   in a Python with bpy: contours of the volumes as Blender makes them
+    bench/usd/places.py STAGE...             in a Python with usd-core: extents, points, fields; what validators say
+    bench/usd/places.py --blender STAGE...   in a Python with bpy: contours of the volumes as Blender makes them
 
 Blender contours `shell_distance` at one voxel with its modifier "Volume to Mesh", and the distances of these vertices
 from the mesh, both in Blender's world, are printed in voxels: they are 1 where both are at the same place.
