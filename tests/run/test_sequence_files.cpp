@@ -10,6 +10,7 @@ TEST_CASE("sequence: resumed, it makes again what is not whole or not of this ru
   TestContext context;
   const TemporaryFolder folder;
   SequenceRequest request = frames_in(folder, 4, twisted);
+  request.frame.options.values.vertices = 200;
   request.frame.statistics = folder / "s.##.json";
   Heard heard(request.frame);
   run_sequence(request, context);
@@ -38,9 +39,9 @@ TEST_CASE("sequence: resumed, it makes again what is not whole or not of this ru
   CHECK(resumed("02", "is there without " + (folder / "s.02.json"), 1));
   put_file(folder / "out.01.ply", whole[2]);
   CHECK(resumed("01", "was made of another input", 1));
-  request.frame.options.values.vertices = 500;
+  request.frame.options.values.vertices = 150;
   CHECK_FALSE(resumed("00", "was made with other options", 4));
-  request.frame.options.values.vertices = 600;
+  request.frame.options.values.vertices = 200;
   CHECK(resumed("00", "was made with other options", 4));
   write_mesh(folder / "in.02.ply", mesh_of(twisted(3)), {"", true});
   CHECK_FALSE(resumed("02", "was made of another input", 2));
