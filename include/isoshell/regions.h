@@ -46,6 +46,13 @@ struct FaceRegions {
 /// Whether a face with these labels lies in one region, or in the background, and so bounds none: it is of a sheet.
 inline bool is_of_sheet(const std::array<int32_t, 2>& labels) { return labels[0] == labels[1]; }
 
+/// Where a wall crosses the line between the centres of two voxels of different labels.
+struct WallCrossing {
+  int64_t face = 0;  ///< 3 times the number of the voxel with the larger coordinates, and the axis between the two
+  float at = 0.5F;   ///< from the centre of the smaller one (0) to that of the larger one (1)
+  std::array<float, 3> normal{0, 0, 0};  ///< of the wall, of length 1 along the array's axes; 0: not known
+};
+
 /// Labels of voxels on a regular lattice. The centre of voxel (i, j, k) is at origin + i * step[0] + j * step[1] +
 /// k * step[2]; what lies outside of the array is background.
 struct LabelVolume {
@@ -63,6 +70,9 @@ struct LabelVolume {
   /// Along which axes the array goes on with its first layer. The walls are then those of one period, from the centres
   /// of the first layer to those of its repetition, and on both of these sides they have the same curves.
   std::array<bool, 3> is_periodic{false, false, false};
+  /// Ascending by face. Where they are given walls run through them, and are not made smooth beyond that; a wall that
+  /// none is of lies in the middle.
+  std::vector<WallCrossing> crossings = {};
   static constexpr double kLeastSmoothing = 0.05;  ///< that parts walls which touch one another in edges of voxels
 };
 

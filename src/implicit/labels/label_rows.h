@@ -24,6 +24,9 @@ class LabelRows {
     return is_inside ? volume_.labels.data() + (size_t(z) * size_t(size(1)) + size_t(y)) * size_t(size(0))
                      : outside_.data();
   }
+  bool has_crossings() const { return !volume_.crossings.empty(); }
+  /// Of a voxel, which may lie beyond the array on its far sides, and then shares it with others.
+  int64_t number_of(Voxel v) const { return (int64_t(v.z) * size(1) + v.y) * size(0) + v.x; }
   int32_t at(Voxel v) const { return v.x >= 0 && v.x < size(0) ? row(v.y, v.z)[v.x] : background(); }
 
  private:

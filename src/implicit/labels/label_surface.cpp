@@ -1,4 +1,6 @@
 // surface_of_labels (see isoshell/io/memory_input.h).
+#include "implicit/labels/label_surface.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -13,6 +15,7 @@
 #include "implicit/labels/absorb_islands.h"
 #include "implicit/labels/count_walls.h"
 #include "implicit/labels/fair_walls.h"
+#include "implicit/labels/place_walls.h"
 #include "implicit/labels/read_progress.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
@@ -203,7 +206,14 @@ void repeat_first_layer(size_t axis, LabelVolume& volume) {
   ++volume.size_vox[axis];
 }
 
-TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell) {
+std::vector<PointQ8> places_of(const LabelWalls& walls, const LabelVolume& volume, const Context& context) {
+  if (volume.smoothing_vox == 0) return walls.at_rest();
+  return volume.crossings.empty() ? fair_walls(walls, volume.smoothing_vox, context)
+                                  : place_walls(walls, volume, context);
+}
+
+TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell,
+                            std::vector<WallCrossing>* of_triangles) {
   if (volume.smallest_island_vox > 1)
     check_memory(volume, kBytesPerRun * count_walls(volume, context).runs, "the search for islands among its labels",
                  name, context);
@@ -228,8 +238,11 @@ TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const C
         ErrorCode::nothing_to_mesh, "read",
         name + ": all its voxels are background, " + std::to_string(volume.background) + "; regions have other labels");
   tell_read(context, kWallsFound);
-  TriangleSoup soup = soup_of(
-      walls, volume.smoothing_vox > 0 ? fair_walls(walls, volume.smoothing_vox, context) : walls.at_rest(), volume);
+  const std::vector<PointQ8> places = places_of(walls, volume, context);
+  TriangleSoup soup = soup_of(walls, places, volume);
+  for (size_t f = 0; of_triangles && f < walls.crossed.size(); ++f)
+    each_triangle(walls.faces[f], places,
+                  [&](const TriangleIndices&) { of_triangles->push_back(crossing_of(volume, walls.crossed[f])); });
   soup.absorbed_walls = std::move(absorbed.lost_pairs);
   return soup;
 }
@@ -237,10 +250,16 @@ TriangleSoup soup_of_labels(LabelVolume volume, const std::string& name, const C
 }  // namespace
 
 TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell) {
+  return surface_of_labels(std::move(volume), name, context, tell, nullptr);
+}
+
+TriangleSoup surface_of_labels(LabelVolume volume, const std::string& name, const Context& context, const Tell& tell,
+                               std::vector<WallCrossing>* of_triangles) {
   check_volume(volume, name);
   check_periodic(volume, name);
   tell_read(context, 0);
-  TriangleSoup soup = run_with_threads(context, [&] { return soup_of_labels(std::move(volume), name, context, tell); });
+  TriangleSoup soup =
+      run_with_threads(context, [&] { return soup_of_labels(std::move(volume), name, context, tell, of_triangles); });
   tell_read(context, 1);
   return soup;
 }

@@ -123,6 +123,7 @@ class WallMaker {
     for (LabelWalls& layer : layers) {
       walls.faces.insert(walls.faces.end(), layer.faces.begin(), layer.faces.end());
       walls.labels.insert(walls.labels.end(), layer.labels.begin(), layer.labels.end());
+      walls.crossed.insert(walls.crossed.end(), layer.crossed.begin(), layer.crossed.end());
       layer = {};
     }
   }
@@ -267,18 +268,19 @@ class WallMaker {
       std::reverse(polygon.begin(), polygon.end());
       label = {far, near};
     }
+    add_polygon(std::move(polygon), out.faces);
+    out.labels.resize(out.faces.size(), label);
+    if (labels_.has_crossings()) out.crossed.resize(out.faces.size(), 3 * labels_.number_of(voxel) + axis);
+  }
+  void add_polygon(std::vector<uint32_t> polygon, std::vector<std::array<uint32_t, 4>>& faces) const {
     if (polygon.size() == 4) {
-      out.faces.push_back({polygon[0], polygon[1], polygon[2], polygon[3]});
-      out.labels.push_back(label);
+      faces.push_back({polygon[0], polygon[1], polygon[2], polygon[3]});
       return;
     }
     // Around a vertex in the middle of an edge: no triangle then has that edge's two ends, which the other pair has.
     const auto is_middle = [&](uint32_t v) { return is_middle_vertex(v); };
     std::rotate(polygon.begin(), std::find_if(polygon.begin(), polygon.end(), is_middle), polygon.end());
-    for (size_t i = 1; i + 1 < polygon.size(); ++i) {
-      out.faces.push_back({polygon[0], polygon[i], polygon[i + 1], kNone});
-      out.labels.push_back(label);
-    }
+    for (size_t i = 1; i + 1 < polygon.size(); ++i) faces.push_back({polygon[0], polygon[i], polygon[i + 1], kNone});
   }
   bool is_middle_vertex(uint32_t vertex) const {
     const size_t z =

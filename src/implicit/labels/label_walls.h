@@ -20,6 +20,7 @@ struct LabelWalls {
   std::vector<std::array<uint32_t, 4>> faces;  ///< four corners in turn, as seen from the second region; of triangles
                                                ///< the last one is kNone
   std::vector<std::array<int32_t, 2>> labels;  ///< per face, as in FaceRegions
+  std::vector<int64_t> crossed = {};  ///< per face, of a volume with crossings: WallCrossing::face, which it stands for
   /// Of a periodic volume the vertices that are one in space, at opposite sides; ascending, as each of them is.
   std::vector<std::vector<uint32_t>> tied = {};
 
