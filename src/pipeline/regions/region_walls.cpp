@@ -16,6 +16,7 @@
 #include "pipeline/grid/sizing.h"
 #include "pipeline/patches/cut_curves.h"
 #include "pipeline/patches/feature_report.h"
+#include "pipeline/regions/face_seams.h"
 #include "pipeline/regions/region_lengths.h"
 #include "pipeline/regions/region_memory.h"
 #include "pipeline/regions/side_creases.h"
@@ -50,6 +51,14 @@ std::vector<uint32_t> vertices_at_periodic_sides(const FeatureMesh& mesh, const 
   return found;
 }
 
+/// Both ascending, as is the result, which has what is in any of them.
+EdgeList in_any(EdgeList edges, const EdgeList& others) {
+  edges.insert(edges.end(), others.begin(), others.end());
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
 /// With fewer triangles, where voxels made far more than edges need that are as long everywhere: what follows takes
 /// time and memory for each.
 FeatureMesh walls_of(const TriangleSoup& soup, const PreparedSurface& p, bool lengths_vary, const Context& context) {
@@ -58,7 +67,8 @@ FeatureMesh walls_of(const TriangleSoup& soup, const PreparedSurface& p, bool le
   if (lengths_vary || !are_thinned_out(soup, p.target.vertices)) return mesh;
   const double edge_world = edge_length_for(mesh, {}, p.target.vertices);
   const auto fewest = uint32_t(kSmallPatch * vertices / p.target.vertices);
-  const KeptInWalls kept{side_creases(mesh, soup.regions, edge_world), vertices_at_periodic_sides(mesh, soup.regions)};
+  KeptInWalls kept{side_creases(mesh, soup.regions, edge_world), vertices_at_periodic_sides(mesh, soup.regions)};
+  kept.creases = in_any(std::move(kept.creases), face_seams(mesh, soup));
   return thin_out(std::move(mesh), kept, p.surface.frame, edge_world, fewest, context);
 }
 
@@ -79,8 +89,9 @@ std::map<int32_t, uint64_t> spanned_volumes(const TriangleSoup& soup, const Latt
   return volumes;
 }
 
-CurveOptions curves_between_regions(const PreparedSurface& p) {
+CurveOptions curves_between_regions(const PreparedSurface& p, const TriangleSoup& soup) {
   CurveOptions curves = curve_options(p.options, nullptr, p.target.edge_length_world);
+  curves.seams = face_seams(p.walls->mesh, soup);
   if (!p.walls->regions.are_of_voxels) return curves;
   const bool is_periodic = p.walls->regions.is_periodic();
   if (curves.mode != CreaseMode::automatic && !is_periodic) return curves;
@@ -137,7 +148,7 @@ PreparedSurface prepare_regions(const TriangleSoup& soup, const RemeshOptions& o
       walls->spanned_volume_q8 = run_with_threads(context, [&] { return spanned_volumes(soup, p.surface.frame); });
     p.walls = walls;
     CurveNetwork network =
-        run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p)); });
+        run_with_threads(context, [&] { return find_curves(p.walls->mesh, curves_between_regions(p, soup)); });
     if (soup.regions.is_periodic()) tie_corners(p.walls->mesh, p.surface.frame, soup.regions.period_world, network);
     report_found(p.walls->mesh, network, false, p.report.features);
     const SharedCut cut = cut_walls(p, network, of_face_world, run);
