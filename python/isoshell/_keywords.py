@@ -13,7 +13,7 @@ from ._paths import path_text
 Keywords = List[Tuple[str, Optional[str]]]
 
 PLACE = ("device", "threads", "max_memory")  # of a Context
-READING = ("iso", "background", "smallest-island", "smoothing", "periodic", "input-format", "features")  # what decides how a source is read
+READING = ("iso", "background", "smallest-island", "smoothing", "periodic", "union", "reference", "input-format", "features")  # what decides how a source is read
 INSTEAD = {  # of options that only the command has
     "help": "see help(isoshell.Options)",
     "version": "see isoshell.__version__",

@@ -66,6 +66,9 @@ class Options(TypedDict, total=False):
             opposite sides [none].
         grids: give vertices the values of these grids of INPUT's .vdb file, as v,Cd,temperature, or of others, as
             FILE.vdb:NAME; all: all numbers and vectors beside the grid that is meshed [none].
+        union: of several level sets: one surface around all of them, not a region of each.
+        reference: of several level sets: the mesh or level set that they were cut from; faces of the result that lie on
+            it are of the material exterior, others of the material inner [none].
         input_format: format of INPUT: ply, obj, stl, off, glb, gltf, xyz, pcd, vdb or nvdb [by its name].
         output_format: format of OUTPUT: ply, obj, stl, off, glb, gltf or vdb [by its name].
         save_shell: also write the shell, to resume from.
@@ -133,6 +136,8 @@ class Options(TypedDict, total=False):
     smoothing: Optional[float]
     periodic: Optional[str]
     grids: Optional[Union[str, Sequence[str]]]
+    union: bool
+    reference: Optional[int]
     input_format: Optional[str]
     output_format: Optional[str]
     save_shell: Optional[Path]

@@ -17,7 +17,11 @@
 #include "geometry/box.h"
 #include "geometry/given_surface.h"
 #include "geometry/world_vector.h"
+#include "implicit/labels/label_surface.h"
+#include "implicit/level_sets/reference_faces.h"
+#include "implicit/level_sets/united_field.h"
 #include "io/faces/face_collector.h"
+#include "io/level_sets.h"
 #include "io/vdb/grid_fields.h"
 #include "io/vdb/stage_reader.h"
 #include "isoshell/advanced/stages.h"
@@ -64,6 +68,17 @@ std::vector<std::string> own_grids(const std::vector<std::string>& names) {
 
 [[noreturn]] void refuse_iso() { refuse_use("--iso is for volumes; leave it out"); }
 
+void check_several(const InputRequest& request) {
+  const bool is_for_several = is_for_level_sets(request);
+  if (!is_for_several && (request.unite || !request.reference.empty()))
+    refuse_use(std::string(request.unite ? "--union" : "--reference") +
+               " is for several level sets; name them as FILE.vdb:*, or more files as INPUT");
+  if (request.unite && !request.reference.empty()) refuse_use("--reference is for regions; leave it out, or --union");
+  const auto& grids = request.grids;
+  if (is_for_several && std::find(grids.begin(), grids.end(), kAllGrids) != grids.end())
+    refuse_use("--grids all would be the level sets, too; name the grids whose values are wanted");
+}
+
 void check_no_labels(const LabelReading& labels) {
   if (const char* const option = labels.given())
     refuse_use(std::string(option) + " is for volumes of labels; leave it out");
@@ -83,6 +98,7 @@ InputReader::InputReader(const std::string& path, const Context& context, const 
 
 void InputReader::read(const InputRequest& request) {
   const std::string& path = request.path;
+  check_several(request);
   if (path != "-") check_exists(path);
   const std::string format = request.format.empty() ? format_of_path(path) : request.format;
   const FileFormat* const known = find_format(format);
@@ -195,11 +211,11 @@ void InputReader::hold_volume(bool keep_open, const std::function<TriangleSoup(V
         "from it");
 }
 
-void InputReader::hold(LabelVolume labels, const std::string& origin) {
+void InputReader::hold(LabelVolume labels, const std::string& origin, std::vector<WallCrossing>* of_triangles) {
   input_.facts.kind = InputKind::labels;
   const std::array<int32_t, 3> size_vox = labels.size_vox;
-  hold(surface_of_labels(std::move(labels), input_.facts.name(), context_,
-                         [&](MessageKind kind, const std::string& text) { tell(kind, text); }));
+  const Tell told = [&](MessageKind kind, const std::string& text) { tell(kind, text); };
+  hold(surface_of_labels(std::move(labels), input_.facts.name(), context_, told, of_triangles));
   std::unordered_set<int32_t> regions;
   for (const auto& pair : input_.soup.regions.labels) regions.insert(pair.begin(), pair.end());
   regions.erase(input_.soup.regions.background);
@@ -228,12 +244,16 @@ void InputReader::read_volume_file(const InputRequest& request) {
 }
 
 void InputReader::read_any_volume(const MeshSource& source, const InputRequest& request) {
+  if (is_for_level_sets(request)) {
+    read_several(source, request);
+    return read_grids(source, request, "");
+  }
   if (holds_stage({source.begin(), source.size()})) return read_stage_file(source);
   if (holds_labels(source, request.grid))
     read_labels_of(source, request);
   else
     read_level_set(source, request);
-  read_grids(source, request);
+  if (!request.grids.empty() && !is_nano_file(source)) read_grids(source, request, meshed_grid(source, request.grid));
 }
 
 void InputReader::read_level_set(const MeshSource& source, const InputRequest& request) {
@@ -241,10 +261,42 @@ void InputReader::read_level_set(const MeshSource& source, const InputRequest& r
               [&](VolumeInfo& info) { return read_volume(source, options_of(request, context_), info); });
 }
 
-void InputReader::read_grids(const MeshSource& source, const InputRequest& request) {
+void InputReader::read_several(const MeshSource& source, const InputRequest& request) {
+  if (request.iso) refuse_use("--iso is for one volume; several level sets are meshed where their values are 0");
+  std::vector<std::unique_ptr<MeshSource>> others;
+  std::vector<LevelSetFile> files{{&source, request.grid}};
+  for (const std::string& name : request.also) {
+    const InputRequest other = named_input(name);
+    check_exists(other.path);
+    others.push_back(std::make_unique<MeshSource>(other.path, source.budget()));
+    files.push_back({others.back().get(), other.grid});
+  }
+  LevelSets sets = read_level_sets(files, context_.memory_limit_bytes);
+  const std::string origin = counted(int64_t(sets.names.size()), "level set") + ", ";
+  if (request.unite)
+    return hold_volume(false, [&](VolumeInfo& volume) {
+      const std::unique_ptr<ScalarField> field = united_level_sets(std::move(sets), context_);
+      return surface_of_field(*field, {"", {}, context_.memory_limit_bytes, request.creases}, volume);
+    });
+  if (const char* const option = request.labels.given_of_labels())
+    refuse_use(std::string(option) + " is for volumes of labels; level sets have places of their own for walls");
+  auto [labels, undecided_vox] = labels_of_level_sets(std::move(sets), context_);
+  if (undecided_vox > 0)
+    warn("level sets overlap deeper than their bands reach, in " + counted(undecided_vox, "voxel") +
+         ": there the first one has the space, up to a wall that no values place; make their bands wider");
+  if (request.labels.smallest_island_vox) labels.smallest_island_vox = *request.labels.smallest_island_vox;
+  const LabelVolume lattice{labels.size_vox, {}, labels.origin_world, labels.step_world};
+  std::vector<WallCrossing> crossings;
+  hold(std::move(labels), origin, request.reference.empty() ? nullptr : &crossings);
+  if (request.reference.empty()) return;
+  const Input reference = read_input(named_input(request.reference), context_, tell_);
+  mark_faces_on_reference(reference.soup, request.reference, crossings, lattice, input_.soup);
+}
+
+void InputReader::read_grids(const MeshSource& source, const InputRequest& request, const std::string& meshed) {
   const std::vector<std::string> names = own_grids(request.grids);
-  if (names.empty() || is_nano_file(source)) return;
-  input_.grids = read_grid_fields(source, names, meshed_grid(source, request.grid));
+  if (names.empty()) return;
+  input_.grids = read_grid_fields(source, names, meshed);
   for (const auto& grid : *input_.grids) note("grid " + grid->name() + " is sampled at the vertices");
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "io/vdb/grid_kinds.h"
 #include "io/vdb/held_grid.h"
@@ -22,7 +23,8 @@ class InputReader {
   void hold_points(PointCloud cloud);
   void hold(const PointCloud& cloud, VolumeCreases creases, bool keep_open);
   void hold_volume(bool keep_open, const std::function<TriangleSoup(VolumeInfo&)>& extract);
-  void hold(LabelVolume labels, const std::string& origin = "");
+  /// `of_triangles` gets the crossing of each triangle, where they are wanted.
+  void hold(LabelVolume labels, const std::string& origin = "", std::vector<WallCrossing>* of_triangles = nullptr);
   void hold(const HeldGrid& grid, const InputRequest& request);
   Input taken() { return std::move(input_); }
 
@@ -34,7 +36,8 @@ class InputReader {
   void check_fits(const InputRequest& request) const;
   void read_level_set(const MeshSource& source, const InputRequest& request);
   /// The bytes of standard input are there no second time: all that a run takes of them is read now.
-  void read_grids(const MeshSource& source, const InputRequest& request);
+  void read_grids(const MeshSource& source, const InputRequest& request, const std::string& meshed);
+  void read_several(const MeshSource& source, const InputRequest& request);
   void read_labels_of(const MeshSource& source, const InputRequest& request);
   void hold(LabelGrid grid, const LabelReading& reading);
   void read_stage_file(const MeshSource& source);

@@ -111,14 +111,6 @@ double voxel_size(const AffineMap& map) {
   return std::sqrt(longest_sq);
 }
 
-TriangleSoup described_surface_of(ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
-  info.grid = field.name;
-  info.grid_class = field.grid_class;
-  info.voxel_size_world = voxel_size(field.to_world);
-  info.blocks = int64_t(field.blocks().size());
-  return surface_of(field, options, info);
-}
-
 void check_map(const ScalarField& field) {
   if (std::isnan(field.background))
     throw Error(ErrorCode::unreadable_input, "read", field.title() + " has a background that is not a number");
@@ -194,6 +186,14 @@ void set_periodic_regions(const DenseVolume& volume, const VolumeReadOptions& op
 
 }  // namespace
 
+TriangleSoup surface_of_field(ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info) {
+  info.grid = field.name;
+  info.grid_class = field.grid_class;
+  info.voxel_size_world = voxel_size(field.to_world);
+  info.blocks = int64_t(field.blocks().size());
+  return surface_of(field, options, info);
+}
+
 TriangleSoup read_volume(const std::string& path, const VolumeReadOptions& options, VolumeInfo& info) {
   ReadingBudget budget(options.memory_limit_bytes);
   const MeshSource source(path, budget);
@@ -211,20 +211,20 @@ TriangleSoup read_volume(std::unique_ptr<ScalarField> field, const std::string& 
   field->file = file;
   check_map(*field);
   if (field->is_band_alone()) field = with_points_beside_band(std::move(field), options.memory_limit_bytes);
-  return described_surface_of(*field, options, info);
+  return surface_of_field(*field, options, info);
 }
 
 TriangleSoup surface_of_volume(const DenseVolume& given, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info) {
   if (!check_periodic(given, name, options)) {
     DenseField field(given, name, options);
-    return described_surface_of(field, options, info);
+    return surface_of_field(field, options, info);
   }
   const DenseVolume volume = straightened(given);
   VolumeReadOptions rounded = options;
   rounded.creases = VolumeCreases::none;
   DenseField field(volume, name, rounded);
-  TriangleSoup surface = described_surface_of(field, rounded, info);
+  TriangleSoup surface = surface_of_field(field, rounded, info);
   if (info.kind != VolumeKind::at_value)
     throw Error(ErrorCode::usage, "read", name + ": a periodic volume has values of both signs; give an isovalue");
   if (info.open_cells > 0)

@@ -31,6 +31,23 @@ std::string refusal(std::vector<const char*> words) {
 
 }  // namespace
 
+TEST_CASE("args: several volumes are INPUTs, and the last word is OUTPUT", "[cli][args]") {
+  const Arguments a = *parse({"a.vdb:piece*", "b.vdb", "c.vdb:x", "out.ply", "--union", "--quiet"}).run;
+  CHECK(a.run.input.path == "a.vdb");
+  CHECK(a.run.input.grid == "piece*");
+  CHECK(a.run.input.also == std::vector<std::string>{"b.vdb", "c.vdb:x"});
+  CHECK(a.run.input.unite);
+  CHECK(a.run.output.path == "out.ply");
+  const Arguments named = *parse({"a.vdb", "b.vdb", "c.vdb", "-o", "out.ply"}).run;
+  CHECK(named.run.input.also == std::vector<std::string>{"b.vdb", "c.vdb"});
+  CHECK(named.run.output.path == "out.ply");
+  CHECK(parse({"a.vdb", "b.vdb", "-o", "out.ply"}).run->run.input.also == std::vector<std::string>{"b.vdb"});
+  CHECK(contains(refusal({"a.vdb", "b.ply", "-o", "out.ply"}), "OUTPUT is given twice"));
+  CHECK(arguments({"--reference", "scan.obj"}).run.input.reference == "scan.obj");
+  CHECK(contains(refusal({"a.obj", "b.obj", "out.ply"}), "one argument too many: 'out.ply'"));
+  CHECK(contains(refusal({"a.vdb", "b.vdb", "out.ply", "--frames", "1-2"}), "--frames takes one INPUT"));
+}
+
 TEST_CASE("args: two files are enough, and every option has a default", "[cli][args]") {
   const Arguments a = arguments({});
   CHECK(a.run.input.path == "in.obj");

@@ -63,6 +63,17 @@ cmp "$folder/file.ply" "$folder/stream.ply"
 "$command" "$folder/file.ply" - --stop-after level-set --resolution 48 --vertices 300 --quiet |
   vdb_tool -quiet -read stdin.vdb -ls2mesh -write "$folder/back.ply"
 test -s "$folder/back.ply"
+# Two level sets as regions, of one file and of two, and as one surface.
+pieces() { vdb_tool -quiet -sphere r=0.5 center='(-0.48,0,0)' voxel=0.05 name=piece1 -sphere r=0.5 center='(0.48,0,0)' voxel=0.05 name=piece2 "$@"; }
+pieces -write "$folder/pieces.vdb"
+remesh "$folder/pieces.vdb:piece*" "$folder/pieces.ply" --require regions,adjacency
+grep -aq 'comment region 2 piece2' "$folder/pieces.ply"
+remesh "$folder/pieces.vdb:piece1" "$folder/pieces.vdb:piece2" "$folder/two.ply" --require regions
+cmp "$folder/pieces.ply" "$folder/two.ply"
+remesh "$folder/pieces.vdb:*" "$folder/union.ply" --union --require closed,manifold,components=1
+if remesh "$folder/pieces.vdb:piece1" "$folder/no.ply" --union 2> "$folder/why.txt"; then exit 1; fi
+grep -q -- '--union is for several level sets' "$folder/why.txt"
+
 # The lines of docs/guide/pipelines.md, as they stand there.
 page=$(cd "$(dirname "$0")/../.." && pwd)/docs/guide/pipelines.md
 mkdir "$folder/page"
@@ -70,13 +81,24 @@ cp "$folder/file.ply" "$folder/page/scan.ply"
 (
   cd "$folder/page"
   vdb_tool -quiet -sphere r=1 voxel=0.05 name=surface -grad keep=1 -write both.vdb
-  $python -c 'import pyopenvdb as vdb
+  $python -c 'import numpy, pyopenvdb as vdb
+pieces = []
 surface, v = vdb.read("both.vdb", "surface"), vdb.read("both.vdb", "grad_surface")
 v.name = "v"
-vdb.write("fluid.vdb", grids=[surface, v])'
+vdb.write("fluid.vdb", grids=[surface, v])
+low, high = surface.evalActiveVoxelBoundingBox()
+ball = numpy.empty([b - a + 1 for a, b in zip(low, high)], numpy.float32)
+surface.copyToArray(ball, ijk=low)
+beyond = (numpy.arange(low[0], high[0] + 1)[:, None, None] + 0.3) * numpy.float32(0.05)  # a plane
+for name, side in (("piece1", 1), ("piece2", -1)):
+    piece = surface.deepCopy()
+    piece.name = name
+    piece.copyFromArray(numpy.clip(numpy.maximum(ball, side * beyond), -surface.background, surface.background).astype(numpy.float32), ijk=low)
+    pieces.append(piece)
+vdb.write("pieces.vdb", grids=pieces)'
   vdb_isomesh() { "$command" "$@" --quiet; }
   sed -n 's/^    \(vdb_\)/\1/p' "$page" > lines.txt
-  test "$(wc -l < lines.txt)" -eq 6
+  test "$(wc -l < lines.txt)" -eq 7
   while read -r line; do
     eval "$line" < /dev/null || { echo "docs/guide/pipelines.md: $line"; exit 1; }
   done < lines.txt

@@ -24,7 +24,8 @@ std::string description(const Program& program) {
          listed_endings(reads_mesh) + "), a point cloud (" + listed_endings(reads_points) + "),\n        a volume (" +
          listed_endings(reads_volume) +
          ": a level set, unsigned distances, or with --iso a fog volume;\n"
-         "        FILE.vdb:NAME names a grid), or a stage file that this command wrote (.vdb); - reads\n"
+         "        FILE.vdb:NAME names a grid), level sets that are regions (FILE.vdb:piece*, or several\n"
+         "        INPUTs), or a stage file that this command wrote (.vdb); - reads\n"
          "        standard input and needs --input-format" +
          line_of(program.also_reads) +
          "\n"
@@ -33,6 +34,11 @@ std::string description(const Program& program) {
          "), or a .vdb file with --stop-after; - writes standard\n"
          "        output and needs --output-format" +
          line_of(program.also_writes);
+}
+
+bool is_volume(const std::string& name) {
+  const FileFormat* const format = find_format(named_input(name).format);
+  return format && format->reads_volume;
 }
 
 /// The command as CLI11 knows it. All values are text, which the options turn into what they are.
@@ -50,6 +56,7 @@ class Parser {
   void split(std::vector<std::string> words) {
     try {
       app_.parse(std::move(words));
+      if (const std::vector<std::string> left = app_.remaining(); !left.empty()) last_ = left.back();
     } catch (const CLI::ParseError& e) {
       refuse(std::string(e.what()) + "; see --help");
     }
@@ -58,12 +65,20 @@ class Parser {
   bool has_flag(const std::string& name) const { return flags_.at(name); }
   const CLI::App& app() const { return app_; }
   const std::string& input() const { return input_; }
+  /// INPUTs behind the first one: the words behind it, but OUTPUT, which is the last one or named.
+  std::vector<std::string> also() const {
+    std::vector<std::string> words = app_.remaining();
+    if (!output_.empty()) words.insert(words.begin(), output_);
+    if (texts_.at("output").empty() && !words.empty()) words.pop_back();
+    return words;
+  }
   /// Throws: usage.
   const std::string& output() const {
     const std::string& named = texts_.at("output");
-    if (!output_.empty() && !named.empty())
+    if (named.empty()) return last_.empty() ? output_ : last_;
+    if (!output_.empty() && !(is_volume(input_) && is_volume(output_)))
       refuse("OUTPUT is given twice, as '" + output_ + "' and as --output '" + named + "'; leave one out");
-    return named.empty() ? output_ : named;
+    return named;
   }
 
   void set_options(Arguments& a) const {
@@ -93,7 +108,7 @@ class Parser {
   std::vector<CommandOption> options_;
   std::map<std::string, std::string> texts_;  ///< of options with a value, by name
   std::map<std::string, bool> flags_;         ///< --force=false is none
-  std::string input_, output_;
+  std::string input_, output_, last_;
 };
 
 void check_sequence(const Arguments& a) {
@@ -115,15 +130,17 @@ Arguments checked_arguments(const Parser& parser, const std::string& output) {
   return a;
 }
 
-void refuse_leftovers(const CLI::App& app) {
+/// Words that are neither options nor files: several INPUTs are volumes.
+void refuse_leftovers(const CLI::App& app, const std::string& input) {
   for (const std::string& left : app.remaining()) {
     if (left.size() < 2 || left[0] != '-') continue;
     const std::string hint = closest_option(app, left);
     refuse("unknown option " + left + (hint.empty() ? "; see --help" : "; did you mean " + hint + "?"));
   }
-  if (!app.remaining().empty())
+  if (!app.remaining().empty() && (input.empty() || !is_volume(input)))
     refuse("one argument too many: '" + app.remaining()[0] +
-           "'; there is one INPUT and one OUTPUT, which are patterns as 'mesh.####.ply' with --frames");
+           "'; there is one INPUT, or several level sets, and one OUTPUT, which are patterns as 'mesh.####.ply' with "
+           "--frames");
 }
 
 }  // namespace
@@ -139,10 +156,12 @@ CommandLine parse_command_line(int argc, const char* const* argv, const Program&
   parser.split(std::move(words));
   if (parser.has_flag("help")) return {std::nullopt, help_text(parser.app())};
   if (parser.has_flag("version")) return {std::nullopt, version_text(program.name)};
-  refuse_leftovers(parser.app());
+  refuse_leftovers(parser.app(), parser.input());
   Arguments a = checked_arguments(parser, parser.output());
   if (parser.input().empty()) refuse("INPUT is missing; see --help");
   if (parser.output().empty() && !a.dry_run) refuse("OUTPUT is missing; see --help");
+  a.run.input.also = parser.also();
+  if (a.frames && !a.run.input.also.empty()) refuse("--frames takes one INPUT; name its level sets as FILE.####.vdb:*");
   a.run.input = named_input(parser.input(), std::move(a.run.input));
   return {std::move(a), ""};
 }
@@ -153,7 +172,7 @@ Arguments parse_given_options(const std::vector<GivenOption>& given, const std::
   for (const GivenOption& option : given)
     words.push_back("--" + option.name + (option.value ? "=" + *option.value : ""));
   parser.split(std::move(words));
-  refuse_leftovers(parser.app());
+  refuse_leftovers(parser.app(), "");
   return checked_arguments(parser, output);
 }
 

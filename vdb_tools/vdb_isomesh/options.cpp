@@ -155,6 +155,14 @@ std::vector<CommandOption> input_options() {
         "FILE.vdb:NAME; all: all numbers and vectors beside the grid that is meshed",
         "none"},
        set_grids},
+      {{group, "union", "", "of several level sets: one surface around all of them, not a region of each"},
+       [](const std::string&, Arguments& a) { a.run.input.unite = true; }},
+      {{group, "reference", "FILE[:GRID]",
+        "of several level sets: the mesh or level set that they were cut from; faces of the result that lie on it are "
+        "of "
+        "the material exterior, others of the material inner",
+        "none"},
+       [](const std::string& text, Arguments& a) { a.run.input.reference = text; }},
       {{group, "input-format", "F", "format of INPUT: " + listed_formats(reads_anything), "by its name"},
        [](const std::string& text, Arguments& a) { a.run.input.format = text; }},
   };

@@ -40,18 +40,26 @@ struct LabelReading {
            : is_periodic         ? "--periodic"
                                  : nullptr;
   }
+  /// The first one that level sets as regions have no use for.
+  const char* given_of_labels() const {
+    return background ? "--background" : smoothing_vox ? "--smoothing" : is_periodic ? "--periodic" : nullptr;
+  }
 };
 
 /// A file and what is needed to read it.
 struct InputRequest {
   std::string path;                             ///< "-" is standard input
   std::string format;                           ///< lower case, without a dot; empty: by the path
-  std::string grid;                             ///< of a volume, as in VolumeReadOptions; empty: the only one
+  std::string grid;                             ///< of a volume, as in VolumeReadOptions; empty: the only one; with *
+                                                ///< or ? all level sets whose names fit, as regions
   std::optional<double> iso;                    ///< of a volume
   LabelReading labels = {};                     ///< of a volume of labels
   VolumeCreases creases = VolumeCreases::none;  ///< of a volume or points; a run sets it by its features
   bool keep_open = false;                       ///< the same of borders; a run sets it by its boundary
   bool keep_points = false;                     ///< of points: no surface is made of them
+  std::vector<std::string> also = {};   ///< more files of level sets, named as INPUT is: all of them are regions
+  bool unite = false;                   ///< of several level sets: one surface around all of them
+  std::string reference = {};           ///< of several level sets: a mesh or level set, named as INPUT is, what was cut
   std::vector<std::string> grids = {};  ///< whose values vertices of the result get, as grid_name_of() takes them
 };
 

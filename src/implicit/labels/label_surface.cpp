@@ -25,7 +25,8 @@ namespace isoshell {
 namespace {
 
 constexpr size_t kMostNamed = 10;
-constexpr int64_t kBytesPerRun = 100;  ///< while islands are looked for; measured: 40 to 100
+constexpr int64_t kBytesPerCrossing = sizeof(WallCrossing) + 8;  ///< with what each face says of it
+constexpr int64_t kBytesPerRun = 100;                            ///< while islands are looked for; measured: 40 to 100
 
 [[noreturn]] void refuse_use(const std::string& message) { throw Error(ErrorCode::usage, "read", message); }
 
@@ -63,7 +64,7 @@ void check_volume(const LabelVolume& volume, const std::string& name) {
 
 void check_memory(const LabelVolume& volume, int64_t bytes, const char* what, const std::string& name,
                   const Context& context) {
-  bytes += 4 * int64_t(volume.labels.size());
+  bytes += 4 * int64_t(volume.labels.size()) + kBytesPerCrossing * int64_t(volume.crossings.size());
   if (context.memory_limit_bytes <= 0 || bytes <= context.memory_limit_bytes) return;
   throw Error(ErrorCode::out_of_memory, "read",
               name + ": " + what + " would take about " + readable_bytes(bytes) + ", more than the limit of " +

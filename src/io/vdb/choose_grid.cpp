@@ -36,8 +36,9 @@ size_t choose_grid(const std::string& path, const std::vector<VolumeGrid>& named
     throw Error(ErrorCode::usage, "read", path + ": has no grid \"" + options.grid + "\"; it holds " + list_of(grids));
   if (!fit.empty())
     throw Error(ErrorCode::usage, "read",
-                path + ": holds several grids, name one as " + path + ":" + grids[fit[0]].name + "; they are " +
-                    list_of(grids));
+                path + ": holds several grids, name one as " + path + ":" + grids[fit[0]].name +
+                    (level_sets.size() > 1 ? ", or all level sets, as regions, by " + path + ":*" : "") +
+                    "; they are " + list_of(grids));
   std::string why;
   for (const VolumeGrid& grid : grids) why += (why.empty() ? "; " : ", ") + grid.text() + " " + grid.flaw;
   throw Error(ErrorCode::nothing_to_mesh, "read", path + ": holds no grid " + wanted + why);

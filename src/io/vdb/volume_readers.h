@@ -34,6 +34,9 @@ bool unpack_stream(View<const char> packed, bool zip, View<char> to);
 std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions& options);
 std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const VolumeReadOptions& options);
 
+/// The surface of a field, as read_volume() finds it.
+TriangleSoup surface_of_field(ScalarField& field, const VolumeReadOptions& options, VolumeInfo& info);
+
 /// read_volume() of bytes that are in memory.
 TriangleSoup read_volume(const MeshSource& source, const VolumeReadOptions& options, VolumeInfo& info);
 /// read_volume() of a field; `file` is what messages say it is of.

@@ -1,0 +1,78 @@
+// See united_field.h.
+#include "implicit/level_sets/united_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "implicit/level_sets/distance_blocks.h"
+
+namespace isoshell {
+namespace {
+
+class UnitedField : public ScalarField {
+ public:
+  UnitedField(std::vector<DistanceBlocks> sets, double voxel_size_world)
+      : sets_(std::move(sets)), voxel_size_world_(voxel_size_world) {
+    for (const DistanceBlocks& set : sets_)
+      set.for_each_block([&](Voxel b) {
+        const Voxel origin{kFieldBlock * b.x, kFieldBlock * b.y, kFieldBlock * b.z};
+        (set.is_tile(origin) ? tile_ : block_).push_back(origin);
+      });
+    leave_once(block_);
+    leave_once(tile_);
+    tile_.erase(std::remove_if(tile_.begin(), tile_.end(),
+                               [&](Voxel v) { return std::binary_search(block_.begin(), block_.end(), v, before); }),
+                tile_.end());
+  }
+
+  std::vector<Voxel> blocks() const override { return block_; }
+  std::vector<FieldTile> tiles() const override {
+    std::vector<FieldTile> tiles;
+    for (const Voxel& v : tile_) tiles.push_back({v, kFieldBlock, value_at(v)});
+    return tiles;
+  }
+  void copy(Voxel origin, const int size[3], float* to) const override {
+    copy_block(size, to, [&](int i) {
+      return value_at({origin.x + (i >> 6), origin.y + (i >> 3 & 7), origin.z + (i & 7)});
+    });
+  }
+
+ private:
+  static bool before(Voxel a, Voxel b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
+  static void leave_once(std::vector<Voxel>& list) {
+    std::sort(list.begin(), list.end(), before);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  float value_at(Voxel v) const {
+    float least = INFINITY;
+    for (const DistanceBlocks& set : sets_) least = std::min(least, set.at(v));
+    return float(voxel_size_world_ * double(least));
+  }
+
+  const std::vector<DistanceBlocks> sets_;
+  const double voxel_size_world_;
+  std::vector<Voxel> block_, tile_;  ///< their smallest corners, sorted
+};
+
+}  // namespace
+
+std::unique_ptr<ScalarField> united_level_sets(LevelSets sets, const Context& context) {
+  const ScalarField& first = *sets.fields.front();
+  const double voxel_size_world = cube_edge(first.to_world);
+  const std::string file = first.file, grid_class = first.grid_class;
+  const AffineMap map = first.to_world;
+  double background = first.background;
+  std::string name;
+  for (const auto& field : sets.fields) background = std::min(background, field->background);
+  for (const std::string& of : sets.names) name += (name.empty() ? "" : ", ") + of;
+  auto united = std::make_unique<UnitedField>(distance_blocks_of(std::move(sets), context), voxel_size_world);
+  united->file = file;
+  united->name = name;
+  united->grid_class = grid_class;
+  united->background = background;
+  united->to_world = map;
+  return united;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,89 @@
+// See level_sets.h.
+#include "io/level_sets.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "io/vdb/grid_kinds.h"
+#include "io/vdb/grid_names.h"
+#include "io/vdb/volume_readers.h"
+#include "isoshell/error.h"
+
+namespace isoshell {
+namespace {
+
+constexpr char kLevelSet[] = "level set";
+
+bool is_pattern(const std::string& name) { return name.find_first_of("*?") != std::string::npos; }
+
+/// Names apart from all others of the grids that a file is asked for.
+std::vector<std::string> grids_of(const LevelSetFile& file) {
+  const MeshSource& source = *file.source;
+  if (!is_pattern(file.grid)) return {meshed_grid(source, file.grid)};
+  const VdbLayout layout = read_vdb_layout(source.name(), {source.begin(), source.size()});
+  std::vector<VolumeGrid> grids;
+  for (const VdbGridSpan& span : layout.grids) grids.push_back(as_volume(span));
+  std::vector<std::string> found;
+  std::string all;
+  for (const VolumeGrid& grid : with_names_apart(grids)) {
+    all += (all.empty() ? "" : ", ") + grid.text();
+    if (grid.grid_class == kLevelSet && grid.flaw.empty() && fits(grid.name, file.grid)) found.push_back(grid.name);
+  }
+  if (found.empty())
+    throw Error(ErrorCode::usage, "read",
+                source.name() + ": no level set has a name like \"" + file.grid + "\"; it holds " + all);
+  std::sort(found.begin(), found.end());  // so that labels do not depend on who wrote the file
+  return found;
+}
+
+std::unique_ptr<ScalarField> read_level_set(const MeshSource& source, const std::string& grid, int64_t limit_bytes) {
+  if (is_nano_file(source))
+    throw Error(ErrorCode::usage, "read", source.name() + ": several level sets are read of .vdb files; convert it");
+  std::unique_ptr<ScalarField> field = read_vdb_volume(source, {grid, {}, limit_bytes});
+  field->file = source.name();
+  if (field->grid_class != kLevelSet)
+    throw Error(ErrorCode::usage, "read",
+                field->title() + " has the class " + field->grid_class +
+                    "; several volumes are meshed together where all of them are level sets");
+  return field;
+}
+
+}  // namespace
+
+bool is_for_level_sets(const InputRequest& request) { return !request.also.empty() || is_pattern(request.grid); }
+
+bool fits(const std::string& name, const std::string& pattern) {
+  size_t n = 0, p = 0, star = std::string::npos, from = 0;  // where the last * is, and what it stands for begins after
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      from = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p, ++n;
+    } else if (star != std::string::npos) {
+      p = star + 1;
+      n = ++from;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string::npos;
+}
+
+LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory_limit_bytes) {
+  LevelSets sets;
+  std::vector<std::string> stems;
+  for (const LevelSetFile& file : files)
+    for (const std::string& grid : grids_of(file)) {
+      sets.fields.push_back(read_level_set(*file.source, grid, memory_limit_bytes));
+      sets.names.push_back(grid);
+      stems.push_back(std::filesystem::path(file.source->name()).stem().string());
+    }
+  const std::vector<std::string> names = sets.names;
+  for (size_t i = 0; i < names.size(); ++i)
+    if (std::count(names.begin(), names.end(), names[i]) > 1) sets.names[i] = stems[i] + ":" + names[i];
+  return sets;
+}
+
+}  // namespace isoshell

@@ -1,0 +1,27 @@
+// Several level sets of .vdb files.
+#pragma once
+
+#include "implicit/level_sets/level_set_labels.h"
+#include "io/bytes/mesh_source.h"
+#include "isoshell/io/input.h"
+
+namespace isoshell {
+
+/// Whether a request is for several level sets: it names more than one file, or its grid has * or ? in its name.
+bool is_for_level_sets(const InputRequest& request);
+
+/// Whether a name is of a pattern, in which * stands for any letters and ? for one.
+bool fits(const std::string& name, const std::string& pattern);
+
+/// A file of the request, with what it names.
+struct LevelSetFile {
+  const MeshSource* source;
+  std::string grid;  ///< as InputRequest::grid
+};
+
+/// Reads the level sets that the files name, in their order, and those of a pattern by their names. A region has the
+/// name of its grid, or FILE:GRID where that of another one is the same. They need the bytes of the files. Throws:
+/// usage where a pattern fits no level set; and as read_vdb_volume() does.
+LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory_limit_bytes);
+
+}  // namespace isoshell

@@ -1,0 +1,244 @@
+// Level sets that are regions together: where walls between them run, what of them is outside, and what is refused.
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "io/level_sets.h"
+#include "isoshell/error.h"
+#include "isoshell/io/input.h"
+#include "isoshell/region_census.h"
+#include "isoshell/remesh.h"
+#include "support/catch.h"
+#include "support/refusals.h"
+#include "support/temporary_file.h"
+
+using namespace isoshell;
+
+namespace {
+
+constexpr double kVoxel = 0.05;
+using Distance = std::function<double(const WorldPoint&)>;
+
+double norm(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
+
+Distance ball(double x, double radius) {
+  return [=](const WorldPoint& p) { return norm(p.x - x, p.y, p.z) - radius; };
+}
+
+/// From `low` to `high` along x, and as wide as .4 on both sides along y and z.
+Distance box(double low, double high) {
+  return [=](const WorldPoint& p) {
+    const double x = std::abs(p.x - (low + high) / 2) - (high - low) / 2, y = std::abs(p.y) - .4,
+                 z = std::abs(p.z) - .4;
+    const double inside = std::min(0., std::max({x, y, z}));
+    return inside + norm(std::max(x, 0.), std::max(y, 0.), std::max(z, 0.));
+  };
+}
+
+openvdb::FloatGrid::Ptr level_set(const std::string& name, const Distance& distance, double shift = 0) {
+  openvdb::initialize();
+  constexpr double kBand = 3 * kVoxel;
+  constexpr int kHalf = 27;
+  auto grid = openvdb::FloatGrid::create(float(kBand));
+  grid->setName(name);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
+  if (shift != 0) grid->transform().postTranslate({shift, 0, 0});
+  auto voxels = grid->getAccessor();
+  for (int i = -kHalf; i <= kHalf; ++i)
+    for (int j = -kHalf; j <= kHalf; ++j)
+      for (int k = -kHalf; k <= kHalf; ++k) {
+        const double d = distance({i * kVoxel, j * kVoxel, k * kVoxel});
+        if (d >= kBand) continue;
+        if (d > -kBand)
+          voxels.setValueOn({i, j, k}, float(d));
+        else
+          voxels.setValueOff({i, j, k}, float(-kBand));
+      }
+  return grid;
+}
+
+void write(const std::string& path, const openvdb::GridPtrVec& grids) { openvdb::io::File(path).write(grids); }
+
+InputRequest request_for(const std::string& name) { return named_input(name); }
+
+Input read(const InputRequest& request) { return read_input(request, int64_t(0)); }
+
+/// Of the walls between these two labels: their area, and how far their vertices are from x at most.
+struct Wall {
+  double area = 0, farthest_from_x = 0;
+};
+Wall wall_of(const TriangleSoup& soup, const std::array<int32_t, 2>& labels, double x) {
+  Wall wall;
+  for (size_t t = 0; t < soup.triangles.size(); ++t) {
+    if (soup.regions.labels[t] != labels) continue;
+    const auto& [a, b, c] = soup.triangles[t];
+    const WorldPoint &p = soup.vertices[a], &q = soup.vertices[b], &r = soup.vertices[c];
+    const WorldPoint u{q.x - p.x, q.y - p.y, q.z - p.z}, v{r.x - p.x, r.y - p.y, r.z - p.z};
+    wall.area += norm(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x) / 2;
+    for (const WorldPoint& at : {p, q, r}) wall.farthest_from_x = std::max(wall.farthest_from_x, std::abs(at.x - x));
+  }
+  return wall;
+}
+
+double farthest_along_y(const TriangleSoup& soup) {
+  double farthest = 0;
+  for (const WorldPoint& p : soup.vertices) farthest = std::max(farthest, std::abs(p.y));
+  return farthest;
+}
+
+}  // namespace
+
+TEST_CASE("level sets: two that overlap share one wall, where their values are equal", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  write(file.path, {level_set("piece_left", ball(-.5, .6)), level_set("piece_right", ball(.513, .6)),
+                    level_set("other", ball(0, .2))});
+  const Input input = read(request_for(file.path + ":piece_*"));
+  const TriangleSoup& soup = input.soup;
+  CHECK(input.facts.kind == InputKind::labels);
+  REQUIRE(soup.regions.names.size() == 2);
+  CHECK(soup.regions.names[0].name == "piece_left");
+  CHECK(soup.regions.names[1].name == "piece_right");
+  const Wall wall = wall_of(soup, {1, 2}, .0065);
+  const double radius_sq = .36 - .5065 * .5065;
+  CHECK(std::abs(wall.area / (M_PI * radius_sq) - 1) < .02);
+  CHECK(wall.farthest_from_x < .03 * kVoxel);
+}
+
+TEST_CASE("level sets: a warning says that two overlap deeper than their bands reach", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  write(file.path, {level_set("a", ball(-.35, .6)), level_set("b", ball(.35, .6))});
+  std::string told;
+  read_input(request_for(file.path + ":*"), int64_t(0), [&](MessageKind kind, const std::string& text) {
+    if (kind == MessageKind::warning) told += text;
+  });
+  CHECK(contains(told, "deeper than their bands"));
+}
+
+TEST_CASE("level sets: a gap of less than a voxel is closed in its middle, and no slit is left", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  for (const double gap_vox : {0., .4, .9}) {
+    for (const double off_vox : {0., .27, .5}) {
+      const double middle = off_vox * kVoxel, side = gap_vox * kVoxel / 2;
+      write(file.path, {level_set("a", box(-.8, middle - side)), level_set("b", box(middle + side, .8))});
+      const TriangleSoup soup = read(request_for(file.path + ":*")).soup;
+      INFO("gap of " << gap_vox << " voxels at " << off_vox);
+      const Wall wall = wall_of(soup, {1, 2}, middle);
+      CHECK(std::abs(wall.area / .64 - 1) < .13);
+      CHECK(wall.farthest_from_x < .1 * kVoxel);
+      CHECK(farthest_along_y(soup) < .4 + .1 * kVoxel);
+      for (size_t t = 0; t < soup.triangles.size(); ++t) {  // none of one piece runs along the wall
+        if (soup.regions.labels[t] == std::array<int32_t, 2>{1, 2}) continue;
+        const auto& [a, b, c] = soup.triangles[t];
+        const double y = (soup.vertices[a].y + soup.vertices[b].y + soup.vertices[c].y) / 3,
+                     z = (soup.vertices[a].z + soup.vertices[b].z + soup.vertices[c].z) / 3,
+                     x = (soup.vertices[a].x + soup.vertices[b].x + soup.vertices[c].x) / 3;
+        CHECK_FALSE((std::abs(x - middle) < 3 * kVoxel && std::abs(y) < .3 && std::abs(z) < .3));
+      }
+    }
+  }
+}
+
+TEST_CASE("level sets: a gap of more than a voxel stays open", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  write(file.path, {level_set("a", box(-.8, -.04)), level_set("b", box(.04, .8))});
+  CHECK(wall_of(read(request_for(file.path + ":*")).soup, {1, 2}, 0).area == 0);
+}
+
+TEST_CASE("level sets: a result has closed regions with shared walls and the volumes of the bodies", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  write(file.path, {level_set("a", box(-.8, .01)), level_set("b", box(.01, .8))});
+  const Input input = read(request_for(file.path + ":*"));
+  Context context;
+  RemeshOptions options;
+  options.vertices = 1500;
+  const TriangleMesh mesh = remesh(input.soup, options, context).mesh;
+  const RegionCensus census = take_region_census(mesh, context);
+  REQUIRE(census.regions.size() == 2);
+  for (const RegionCounts& region : census.regions) CHECK(region.closed);
+  CHECK(std::abs(census.regions[0].volume_world / (.81 * .64) - 1) < .01);
+  CHECK(std::abs(census.regions[1].volume_world / (.79 * .64) - 1) < .01);
+}
+
+TEST_CASE("level sets: those of several files are regions, by the names of grids or of files", "[regions][vdb]") {
+  const TemporaryFile one("one.vdb"), other("other.vdb");
+  write(one.path, {level_set("surface", ball(-.3, .4))});
+  write(other.path, {level_set("surface", ball(.3, .4)), level_set("more", ball(.3, .1))});
+  InputRequest request = request_for(one.path);
+  request.also = {other.path + ":surface"};
+  const Input input = read(request);
+  REQUIRE(input.soup.regions.names.size() == 2);
+  CHECK(contains(input.soup.regions.names[0].name, "one:surface"));
+  CHECK(contains(input.soup.regions.names[1].name, "other:surface"));
+  request.also = {other.path};
+  CHECK(says(error_of([&] { read(request); }), "holds several grids, name one as"));
+}
+
+TEST_CASE("level sets: their union is one surface around all of them", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  write(file.path, {level_set("a", ball(-.35, .6)), level_set("b", ball(.35, .6))});
+  InputRequest request = request_for(file.path + ":*");
+  request.unite = true;
+  const Input input = read(request);
+  CHECK(input.facts.kind == InputKind::volume);
+  CHECK(input.soup.regions.empty());
+  for (const WorldPoint& p : input.soup.vertices)
+    CHECK(std::abs(std::min(norm(p.x + .35, p.y, p.z), norm(p.x - .35, p.y, p.z)) - .6) < .2 * kVoxel);
+}
+
+TEST_CASE("level sets: faces on what pieces were cut from are exterior, others inner", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb"), whole("whole.vdb");
+  write(file.path, {level_set("a", box(-.8, -.1)), level_set("b", box(.1, .8))});
+  write(whole.path, {level_set("surface", box(-.8, .8))});
+  InputRequest request = request_for(file.path + ":*");
+  request.reference = whole.path;
+  const TriangleSoup soup = read(request).soup;
+  REQUIRE(soup.attributes.size() == 1);
+  const Attribute& material = soup.attributes[0];
+  CHECK(material.name == kMaterialName);
+  CHECK(material.labels == std::vector<std::string>{"exterior", "inner"});
+  for (size_t t = 0; t < soup.triangles.size(); ++t) {
+    const auto& [a, b, c] = soup.triangles[t];
+    const double x = (soup.vertices[a].x + soup.vertices[b].x + soup.vertices[c].x) / 3;
+    const double y = (soup.vertices[a].y + soup.vertices[b].y + soup.vertices[c].y) / 3,
+                 z = (soup.vertices[a].z + soup.vertices[b].z + soup.vertices[c].z) / 3;
+    if (std::abs(x) < .1 + .2 * kVoxel && std::abs(y) < .4 - kVoxel && std::abs(z) < .4 - kVoxel)
+      CHECK(material.values[t] == 1);
+    if (std::abs(x) > .1 + kVoxel) CHECK(material.values[t] == 0);
+  }
+}
+
+TEST_CASE("level sets: other transforms, other classes and names that nothing has are refused", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  const auto refusal = [&](const openvdb::GridPtrVec& grids, const std::string& pattern) {
+    write(file.path, grids);
+    return error_of([&] { read(request_for(file.path + ":" + pattern)); });
+  };
+  const Error shifted = refusal({level_set("a", ball(0, .5)), level_set("b", ball(.2, .5), .01)}, "*");
+  CHECK(shifted.code() == ErrorCode::usage);
+  CHECK(says(shifted, "grid \"b\" has another transform than"));
+  CHECK(says(shifted, "its voxel (0, 0, 0) lies at x = 0.01, not at 0"));
+  CHECK(says(refusal({level_set("a", ball(0, .5))}, "piece*"),
+             "no level set has a name like \"piece*\"; it holds \"a\""));
+  InputRequest request = request_for(file.path + ":*");
+  request.labels.background = 3;
+  CHECK(says(error_of([&] { read(request); }), "--background is for volumes of labels"));
+  auto fog = level_set("a", ball(0, .5));
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  write(file.path, {fog});
+  request = request_for(file.path);
+  request.also = {file.path};
+  CHECK(says(error_of([&] { read(request); }), "where all of them are level sets"));
+}
+
+TEST_CASE("level sets: patterns stand for names as a shell's do", "[vdb][unit]") {
+  CHECK(fits("piece_1", "piece*"));
+  CHECK(fits("piece_1", "*_?"));
+  CHECK(fits("", "*"));
+  CHECK(fits("abcabd", "*ab?"));
+  CHECK_FALSE(fits("piece_1", "piece"));
+  CHECK_FALSE(fits("piece_10", "piece_?"));
+  CHECK_FALSE(fits("", "?"));
+}
