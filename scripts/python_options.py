@@ -40,9 +40,12 @@ SPECIAL = {
     "output-format": "str",
     "sizing": "Any",
     "region-edge-length": "Mapping[Union[int, str], float]",
+    "reference": "Path",
     "save-level-set": "Union[bool, Path]",
     "stats": "Union[bool, Path]",
 }
+
+WHOLE_NUMBERS = ("K", "R", "D", "N", "LABEL")  # what option tables call them
 
 
 def type_of(option: _isoshell.OptionEntry) -> str:
@@ -58,6 +61,8 @@ def type_of(option: _isoshell.OptionEntry) -> str:
         words = ", ".join(f'"{word}"' for word in option.value.split("|"))
         words = f"Literal[{words}]"
         return f"Union[{words}, Callable[[str, Progress], object]]" if option.name == "progress" else words
+    if option.value not in WHOLE_NUMBERS:
+        raise SystemExit(f"--{option.name} takes {option.value}, whose type is not known: name it in SPECIAL")
     return "int"
 
 

@@ -137,7 +137,7 @@ class Options(TypedDict, total=False):
     periodic: Optional[str]
     grids: Optional[Union[str, Sequence[str]]]
     union: bool
-    reference: Optional[int]
+    reference: Optional[Path]
     input_format: Optional[str]
     output_format: Optional[str]
     save_shell: Optional[Path]

@@ -156,6 +156,8 @@ def _source_of(given: Any) -> Source:
     if isinstance(given, Volume):
         if given.sides not in (None, "sample", "cell", "open"):
             raise Error(f'sides must be "sample", "cell" or "open", and is {given.sides!r}')
+        if given.background is not None:
+            raise Error("background is the value around voxels that have coordinates; leave it out of an array")
         is_mask, periodic = is_true_or_false(given), axes_of("periodic", given.periodic)
         sides = given.sides or ("cell" if is_mask and not any(periodic) else "")
         return Source.volume(_values_of("volume", given.values), *origin_and_steps_of(given), sides, is_mask, periodic)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Optional
 
-from ._arrays import array_of, floats_or_nan
+from ._arrays import array_of, axes_of, floats_or_nan, triple_of
 from ._errors import Error
 from ._inputs import Volume, is_vdb_grid
 from ._isoshell import Source
@@ -30,8 +30,10 @@ def places_itself(values: Any) -> bool:
 
 def sparse_source_of(volume: Volume) -> Source:
     """The source of such a volume."""
-    for name in ("velocities", "sides", "periodic"):
-        if getattr(volume, name):
+    asked = {"velocities": volume.velocities is not None, "sides": volume.sides is not None,
+             "periodic": any(axes_of("periodic", volume.periodic))}
+    for name, is_asked in asked.items():
+        if is_asked:
             raise Error(f"{name} is of volumes that are arrays; leave it out for a sparse one")
     values = volume.values
     if not places_itself(values):
@@ -45,8 +47,6 @@ def sparse_source_of(volume: Volume) -> Source:
 
 
 def _refuse_place(volume: Volume) -> None:
-    from ._arrays import triple_of
-
     is_placed = (triple_of("spacing", volume.spacing) != (1, 1, 1) or triple_of("origin", volume.origin) != (0, 0, 0)
                  or volume.affine is not None)
     if is_placed or volume.coordinates is not None or volume.background is not None:
@@ -80,7 +80,8 @@ def _background_of(given: Any) -> float:
 def _bytes_of(values: Any) -> np.ndarray[Any, Any]:
     import numpy as np
 
-    held = values if isinstance(values, BYTES) else _pickled_grid(values)
+    held = bytes(values) if isinstance(values, memoryview) and not values.contiguous else values
+    held = held if isinstance(held, BYTES) else _pickled_grid(held)
     return np.frombuffer(held, np.uint8)
 
 

@@ -131,7 +131,16 @@ def test_what_is_no_sparse_volume_is_refused(ball, distances):
     assert "sides is of volumes that are arrays" in refusal([1.0] * 3, coordinates=three, sides="cell")
     assert "leave out spacing, origin" in refusal(distances, spacing=2)
     assert "background is inf" in refusal([1.0] * 3, coordinates=three, background=np.inf)
+    assert "none of its values is 0 or above" in refusal([-1.0] * 3, coordinates=three)
+    assert "background is -2.0" in refusal([-1.0, 1.0, 1.0], coordinates=three, background=-2)
+    assert "velocities is of volumes that are arrays" in refusal([1.0] * 3, coordinates=three, velocities=np.zeros((3, 3)))
+    assert "background is the value around" in refusal(np.zeros((3, 3, 3)), background=1)
+    assert "has no voxels" in refusal([], coordinates=np.zeros((0, 3), int))
+    assert "voxel 0 is (1073741824, 0, 0), farther" in refusal([1.0], coordinates=[[2**30, 0, 0]])
     assert "volume: " in refusal(b"nothing that is known")
+    for source in (ball, isoshell.Volume(distances), isoshell.Volume(distances.to_array("1G"))):
+        with pytest.raises(isoshell.Error, match="union is for several level sets"):
+            isoshell.remesh(source, union=True, **SMALL)
     with pytest.raises(isoshell.Error, match="sizing is a sparse volume"):
         isoshell.remesh(ball, sizing=isoshell.Volume(distances), **SMALL)
 

@@ -25,6 +25,7 @@ def of_a_level_set(array: "np.ndarray[Any, Any]") -> int:
     distances.save(Path("a.vdb"), half=True, overwrite=True)
     result = isoshell.remesh(isoshell.Volume(distances.values, coordinates=distances.coordinates, background=1,
                                              affine=distances.transform), save_level_set=True)
+    isoshell.remesh(Path("pieces.vdb:*"), reference=Path("scan.ply"))
     isoshell.remesh(isoshell.Volume(distances)), isoshell.remesh(isoshell.Volume(b"bytes"))
     return len(result.level_set or distances) + int(distances.to_array("1G").size)
 

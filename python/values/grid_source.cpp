@@ -21,8 +21,9 @@ bool is_of(const AnyArray& array, nb::dlpack::dtype_code code, int bits) {
   return array.dtype().code == uint8_t(code) && array.dtype().bits == bits;
 }
 
-/// Whether rows follow one another without a gap.
+/// Whether rows follow one another without a gap, if there are some.
 bool is_packed(const AnyArray& array) {
+  if (array.size() == 0) return true;
   int64_t stride = 1;
   for (size_t axis = array.ndim(); axis-- > 0; stride *= int64_t(array.shape(axis)))
     if (array.shape(axis) > 1 && array.stride(axis) != stride) return false;

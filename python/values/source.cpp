@@ -49,6 +49,13 @@ void refuse_volume_options(const RunRequest& request) {
   refuse_label_options(request);
 }
 
+/// Of what is in memory.
+void refuse_options_of_several(const RunRequest& request) {
+  if (request.input.unite || !request.input.reference.empty())
+    refuse(std::string(request.input.unite ? "--union" : "--reference") +
+           " is for several level sets, which are grids of files; name them as FILE.vdb:*");
+}
+
 Source file(const std::string& path) { return {path, {}, {}, {}}; }
 
 Source surface(const std::string& name, TriangleSoup soup) {
@@ -243,7 +250,10 @@ Input input_of_run(const ReadMemory& read, const RunRequest& request, const Cont
 
 RunResult run_from(const ReadMemory& read, const RunRequest& request, Context& context) {
   RunSteps steps(request);
-  if (read) steps.read(context, [&] { return read(request, context); });
+  if (read) {
+    refuse_options_of_several(request);
+    steps.read(context, [&] { return read(request, context); });
+  }
   return steps.finish(context);
 }
 

@@ -117,6 +117,7 @@ void InputReader::read(const InputRequest& request) {
 }
 
 void InputReader::read(const MeshSource& source, const InputRequest& request) {
+  check_several(request);
   read_any_volume(source, request);
   check_fits(request);
 }
@@ -313,6 +314,7 @@ void InputReader::hold(LabelGrid grid, const LabelReading& reading) {
 }
 
 void InputReader::hold(const HeldGrid& grid, const InputRequest& request) {
+  check_several(request);
   const std::string name = input_.facts.name();
   const LabelReadOptions as_labels{"", context_.memory_limit_bytes, request.labels.background};
   if (grid.volume().flaw.empty()) {

@@ -11,9 +11,10 @@ namespace isoshell {
 LevelSet level_set(const Prepared& prepared, double band_vox, Context& context) {
   const PreparedSurface& given = PreparedParts::of(prepared);
   if (given.walls)
-    throw Error(ErrorCode::usage, "level-set",
-                "a level set is of one solid, and the input parts regions; remesh it without --regions, or labels one "
-                "region after the other");
+    throw Error(
+        ErrorCode::usage, "level-set",
+        "a level set is of one solid, and the input parts regions; remesh it without --regions, several level sets "
+        "with --union, or labels one region after the other");
   Run run{context, false};
   SheetWhenNeeded sheet(given, run);
   const PreparedSurface& p = sheet.get();

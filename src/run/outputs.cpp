@@ -167,6 +167,8 @@ std::vector<NamedFile> inputs_of(const RunRequest& r) {
                                   {"--sizing", file_of_sizing(r.options.sizing)},
                                   {"--features", r.options.values.line_file}};
   for (const std::string& name : r.input.grids) files.push_back({"--grids", grid_name_of(name).file});
+  for (const std::string& name : r.input.also) files.push_back({kInput, named_input(name).path});
+  if (!r.input.reference.empty()) files.push_back({"--reference", named_input(r.input.reference).path});
   return files;
 }
 

@@ -73,6 +73,14 @@ cmp "$folder/pieces.ply" "$folder/two.ply"
 remesh "$folder/pieces.vdb:*" "$folder/union.ply" --union --require closed,manifold,components=1
 if remesh "$folder/pieces.vdb:piece1" "$folder/no.ply" --union 2> "$folder/why.txt"; then exit 1; fi
 grep -q -- '--union is for several level sets' "$folder/why.txt"
+cp "$folder/pieces.vdb" "$folder/other.vdb"
+if remesh "$folder/pieces.vdb:piece1" "$folder/other.vdb:piece2" "$folder/no.ply" --union --force \
+    --save-level-set "$folder/other.vdb" 2> "$folder/why.txt"; then exit 1; fi
+grep -q 'named twice' "$folder/why.txt"
+cmp "$folder/pieces.vdb" "$folder/other.vdb"
+if remesh "$folder/pieces.vdb:*" "$folder/no.ply" --reference "$folder/file.ply" --stats "$folder/file.ply" --force \
+    2> "$folder/why.txt"; then exit 1; fi
+grep -q 'named twice' "$folder/why.txt"
 
 # The lines of docs/guide/pipelines.md, as they stand there.
 page=$(cd "$(dirname "$0")/../.." && pwd)/docs/guide/pipelines.md

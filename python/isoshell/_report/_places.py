@@ -69,8 +69,8 @@ def _of_result(after: Surface, edge: float) -> Iterable[Kind]:
     gap = after.of_vertices.get("gap")
     if gap is None:
         return
-    corners = gap[after.faces].astype(bool)
-    ends = after.faces[corners.all(axis=1)][:, [0, 1, 1, 2]].reshape(-1, 2)
+    edges = after.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    ends = edges[gap[edges].astype(bool).all(axis=1)]
     inside = np.flatnonzero(gap)
     patches = _patches(after.vertices, inside, groups(len(after.vertices), ends)[inside])
     yield _kind("Gaps bridged", [Place(f"{len(patch)} vertices of the result", _middle(after.vertices[patch]),

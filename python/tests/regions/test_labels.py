@@ -397,15 +397,3 @@ def test_the_certificate_has_distances_from_the_walls(polycrystal):
     with pytest.raises(isoshell.Error, match="max-deviation") as caught:
         isoshell.remesh(Labels(grains()), require="max-deviation=0.001", **QUICK)
     assert caught.value.code == ErrorCode.GATE_FAILED
-
-
-def test_level_sets_of_a_file_are_regions_and_faces_on_a_reference_have_its_material(tmp_path) -> None:
-    body = isoshell.remesh(Labels(grains(12, 1)), vertices=600, device="cpu").region(1)
-    isoshell.remesh(body, vertices=600, resolution=40, save_level_set=tmp_path / "body.vdb", device="cpu")
-    pieces = f"{tmp_path / 'body.vdb'}:sur*"
-    result = isoshell.remesh(pieces, reference=tmp_path / "body.vdb", require="regions", **QUICK)
-    assert result.region_names == {1: "surface"}
-    assert not result.attributes["material"].any()  # all are exterior
-    assert not isoshell.remesh(pieces, union=True, **QUICK).region_names
-    with pytest.raises(isoshell.Error, match="is for several level sets"):
-        isoshell.remesh(tmp_path / "body.vdb", union=True, **QUICK)

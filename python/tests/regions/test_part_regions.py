@@ -47,3 +47,15 @@ def test_an_attribute_of_faces_says_what_a_part_is() -> None:
 def test_what_is_no_attribute_of_faces_is_refused() -> None:
     with pytest.raises(isoshell.Error, match="no attribute of one number of that name"):
         isoshell.remesh(boxes_in_a_row(2), regions="parts", **QUICK)
+
+
+def test_level_sets_of_a_file_are_regions_and_faces_on_a_reference_have_its_material(tmp_path) -> None:
+    few = {"vertices": 800, "device": "cpu"}
+    isoshell.remesh(box((0, 0, 0), (3, 2, 1)), resolution=40, save_level_set=tmp_path / "body.vdb", **few)
+    pieces = f"{tmp_path / 'body.vdb'}:sur*"
+    result = isoshell.remesh(pieces, reference=tmp_path / "body.vdb", **QUICK)
+    assert result.region_names == {1: "surface"}
+    assert not result.attributes["material"].any()  # all are exterior
+    assert not isoshell.remesh(pieces, union=True, **few).region_names
+    with pytest.raises(isoshell.Error, match="is for several level sets"):
+        isoshell.remesh(tmp_path / "body.vdb", union=True, **few)

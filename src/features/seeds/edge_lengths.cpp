@@ -114,7 +114,7 @@ void vary_edge_lengths(FineMesh& mesh, const VertexGraph& graph, const std::vect
     mesh.edge_length = graded(graph, limits, longest);
     const double reached = 1 / std::sqrt(vertices_of_lengths(mesh));
     if (std::abs(wanted / reached - 1) < kCloseEnough) return;
-    constexpr double kSteep = std::numeric_limits<double>::infinity();  // limits decide up to a longer length
+    constexpr double kSteep = std::numeric_limits<double>::infinity();  // nothing changed: the largest step
     const double slope = reached != before_reached ? (longest - before) / (reached - before_reached) : kSteep;
     before = longest;
     before_reached = reached;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
@@ -13,7 +12,6 @@ namespace isoshell {
 namespace {
 
 constexpr auto kLarger = [](double a, double b) { return std::max(a, b); };
-constexpr auto kSmaller = [](double a, double b) { return std::min(a, b); };
 
 WorldPoint point_in_single(const WorldPoint& p) { return {in_single(p.x), in_single(p.y), in_single(p.z)}; }
 
@@ -86,22 +84,21 @@ double largest_move_world(const TriangleMesh& mesh, const Placement& placement) 
 bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset) {
   const double scale = scale_of(mesh);
   const auto scaled_sq = [&](const WorldPoint& a, const WorldPoint& b) { return length_sq(scale * (b - a)); };
-  const auto moved_sq = [&](size_t i) {
-    const WorldPoint p = mesh.vertices[i] - offset;
+  const auto moved_sq = [&](uint32_t v) {
+    const WorldPoint p = mesh.vertices[v] - offset;
     return scaled_sq(point_in_single(p), p);
   };
-  const auto least_width_sq = [&](size_t i) {
+  const auto is_moved_too_far = [&](size_t i) -> int64_t {
     const auto& t = mesh.triangles[i];
     const WorldPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     const double edge_sq[] = {scaled_sq(a, b), scaled_sq(b, c), scaled_sq(c, a)};
     const auto [least, most] = std::minmax_element(std::begin(edge_sq), std::end(edge_sq));
     const double area_sq = length_sq(cross(scale * (b - a), scale * (c - a)));
-    return area_sq > 0 ? area_sq / *most : *least;
+    const double height_sq = area_sq > 0 ? area_sq / *most : *least;
+    return std::max({moved_sq(t[0]), moved_sq(t[1]), moved_sq(t[2])}) * 1e6 > height_sq;
   };
-  const double infinity = std::numeric_limits<double>::infinity();
-  const double moved = joined_over(mesh.vertices.size(), 0.0, moved_sq, kLarger);
-  const double width = joined_over(mesh.triangles.size(), infinity, least_width_sq, kSmaller);
-  return moved * 1e6 > width || count_lost_triangles(mesh, {NumberType::f32, offset}) > 0;
+  return joined_over(mesh.triangles.size(), int64_t(0), is_moved_too_far, std::plus<int64_t>()) > 0 ||
+         count_lost_triangles(mesh, {NumberType::f32, offset}) > 0;
 }
 
 Placement place_in_doubles(const TriangleMesh&, const WorldPoint& offset) { return {NumberType::f64, offset}; }

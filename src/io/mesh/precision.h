@@ -36,8 +36,8 @@ inline bool is_origin(const WorldPoint& p) { return p.x == 0 && p.y == 0 && p.z 
 /// What files with comments say of an offset: "offset 500000 0 -20"; empty where there is none.
 std::string offset_note(const Placement& placement);
 
-/// True when single precision would move a vertex, less the offset, by more than a thousandth of the least height of a
-/// triangle, which may make triangles intersect, or lose a triangle. Triangles without area count by their edges.
+/// True when single precision would move a corner of a triangle, less the offset, by more than a thousandth of its
+/// least height, which may make triangles intersect, or lose a triangle. Triangles without area count by their edges.
 bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset = {0, 0, 0});
 
 /// Triangles that lose their area there, or tilt by more than 60 degrees.

@@ -114,6 +114,7 @@ class SparseGrid {
     if (!std::isfinite(float(volume_.background))) refuse("its background must be finite");
     if (!is_invertible(lattice_map(volume_.step_world, volume_.origin_world)))
       refuse("its steps from voxel to voxel span no volume; give three finite ones that do");
+    if (volume_.is_level_set) check_signs();
     const int64_t wrong = first_where([&](int64_t i) {
       const Voxel v = volume_.voxels[i];
       return std::isinf(volume_.values[i]) || !is_near(v.x) || !is_near(v.y) || !is_near(v.z);
@@ -126,7 +127,16 @@ class SparseGrid {
     refuse("voxel " + std::to_string(wrong) + " is " + text_of(v) + ", farther out than " +
            std::to_string(kFieldReach) + "; shift the coordinates and the origin");
   }
-  static bool is_near(int32_t c) { return c >= -kFieldReach && c <= kFieldReach; }
+  /// The inside of a level set without its outside would go on without end.
+  void check_signs() const {
+    if (!(volume_.background > 0))
+      refuse("its background is " + std::to_string(volume_.background) +
+             "; it must be above 0, the distance outside of a level set");
+    if (first_where([&](int64_t i) { return volume_.values[i] >= 0; }) == volume_.voxels.size)
+      refuse(
+          "none of its values is 0 or above; give voxels on both sides of the surface, where values change their sign");
+  }
+  static bool is_near(int32_t c) { return c >= -kFieldReach && c < kFieldReach; }
 
   /// The least index below the number of voxels for which `is_it` holds; that number where there is none.
   template <class Is>

@@ -23,8 +23,9 @@ namespace {
 constexpr double kMostOnCurves = 0.5;    ///< of the vertices, where creases are left out
 constexpr double kNearMost = 1.1;        ///< times as many are no reason to look again
 constexpr int kMostLooks = 3;            ///< for creases that fit; edges are shorter where curves face others, once cut
-constexpr double kMoreThanAsked = .04;   ///< vertices that lengths ask for, over those that there are
-constexpr double kFewestByLength = 0.4;  ///< of the vertices: edges are 1.6 times as long as without curves
+constexpr double kMoreThanAsked = .08;   ///< vertices that lengths ask for, over those that there are
+constexpr double kFewestByLength = 0.4;  ///< of the vertices: edges are 1 / sqrt(.4) times as long as without curves
+constexpr int kMostCuts = 3;             ///< for lengths that leave curves and patches their share
 
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
 double six_volumes(const FeatureMesh& mesh) {
@@ -129,19 +130,21 @@ struct CutPlan {
 
 /// Lengths are such that triangles fill the area with the number of vertices, but corners and short curves between them
 /// may take more than that. Then all lengths are longer, as much as it takes for curves and the patches between them to
-/// share the vertices evenly. Throws: NoRoom where they would be too long.
+/// share the vertices evenly, or as near as some cuts come. Throws: NoRoom where they would be too long.
 std::shared_ptr<CutSurface> cut_evenly(const CutPlan& plan, const CurveNetwork& network, Context& context) {
   CutOptions how = plan.how;
-  for (int look = 1;; ++look) {
+  const auto vertices = double(how.vertices);
+  for (int cuts = 1;; ++cuts) {
     auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, how, context));
-    if (plan.how.vertices == 0) return cut;
+    if (vertices == 0) return cut;
     cut->seeds = plan.how.vertices;
-    const double more = FreeSeeds(*cut).by_length(seeds_on_curves(*cut, 0)) - double(cut->seeds);
-    if (more <= kMoreThanAsked * double(cut->seeds) || look == kMostLooks) return cut;
-    how.vertices -= std::llround(more);
-    if (double(how.vertices) < kFewestByLength * double(cut->seeds))
+    const double surplus = FreeSeeds(*cut).by_length(seeds_on_curves(*cut, 0)) - vertices;
+    if (surplus <= kMoreThanAsked * vertices) return cut;
+    how.vertices -= std::llround(surplus);
+    if (double(how.vertices) < kFewestByLength * vertices)
       throw NoRoom("features", "curves, and the patches between them, take more than " + std::to_string(cut->seeds) +
                                    " vertices; use more vertices, or a higher angle from which on edges are features");
+    if (cuts == kMostCuts) return cut;
     how.edge_length_world = edge_length_for(plan.mesh, network, how.vertices);
   }
 }
