@@ -281,10 +281,8 @@ void InputReader::read_several(const MeshSource& source, const InputRequest& req
     });
   if (const char* const option = request.labels.given_of_labels())
     refuse_use(std::string(option) + " is for volumes of labels; level sets have places of their own for walls");
-  auto [labels, undecided_vox] = labels_of_level_sets(std::move(sets), context_);
-  if (undecided_vox > 0)
-    warn("level sets overlap deeper than their bands reach, in " + counted(undecided_vox, "voxel") +
-         ": there the first one has the space, up to a wall that no values place; make their bands wider");
+  auto [labels, warnings] = labels_of_level_sets(std::move(sets), context_);
+  for (const std::string& warning : warnings) warn(warning);
   if (request.labels.smallest_island_vox) labels.smallest_island_vox = *request.labels.smallest_island_vox;
   const LabelVolume lattice{labels.size_vox, {}, labels.origin_world, labels.step_world};
   std::vector<WallCrossing> crossings;

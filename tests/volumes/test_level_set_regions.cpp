@@ -37,11 +37,12 @@ Distance box(double low, double high) {
   };
 }
 
-openvdb::FloatGrid::Ptr level_set(const std::string& name, const Distance& distance, double shift = 0) {
+openvdb::FloatGrid::Ptr level_set(const std::string& name, const Distance& distance, double shift = 0,
+                                  double band_vox = 3) {
   openvdb::initialize();
-  constexpr double kBand = 3 * kVoxel;
+  const double band = band_vox * kVoxel;
   constexpr int kHalf = 27;
-  auto grid = openvdb::FloatGrid::create(float(kBand));
+  auto grid = openvdb::FloatGrid::create(float(band));
   grid->setName(name);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
@@ -51,11 +52,11 @@ openvdb::FloatGrid::Ptr level_set(const std::string& name, const Distance& dista
     for (int j = -kHalf; j <= kHalf; ++j)
       for (int k = -kHalf; k <= kHalf; ++k) {
         const double d = distance({i * kVoxel, j * kVoxel, k * kVoxel});
-        if (d >= kBand) continue;
-        if (d > -kBand)
+        if (d >= band) continue;
+        if (d > -band)
           voxels.setValueOn({i, j, k}, float(d));
         else
-          voxels.setValueOff({i, j, k}, float(-kBand));
+          voxels.setValueOff({i, j, k}, float(-band));
       }
   return grid;
 }
@@ -65,6 +66,27 @@ void write(const std::string& path, const openvdb::GridPtrVec& grids) { openvdb:
 InputRequest request_for(const std::string& name) { return named_input(name); }
 
 Input read(const InputRequest& request) { return read_input(request, int64_t(0)); }
+
+std::string warnings_of(const InputRequest& request) {
+  std::string told;
+  read_input(request, int64_t(0), [&](MessageKind kind, const std::string& text) {
+    if (kind == MessageKind::warning) told += text + '\n';
+  });
+  return told;
+}
+
+/// Of a few voxels, around one.
+openvdb::FloatGrid::Ptr small_ball_at(const std::string& name, int x) {
+  openvdb::initialize();
+  auto grid = openvdb::FloatGrid::create(3.F);
+  grid->setName(name);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  auto voxels = grid->getAccessor();
+  for (int i = -6; i <= 6; ++i)
+    for (int j = -6; j <= 6; ++j)
+      for (int k = -6; k <= 6; ++k) voxels.setValue({x + i, j, k}, float(std::clamp(norm(i, j, k) - 4, -3., 3.)));
+  return grid;
+}
 
 /// Of the walls between these two labels: their area, and how far their vertices are from x at most.
 struct Wall {
@@ -107,14 +129,50 @@ TEST_CASE("level sets: two that overlap share one wall, where their values are e
   CHECK(wall.farthest_from_x < .03 * kVoxel);
 }
 
-TEST_CASE("level sets: a warning says that two overlap deeper than their bands reach", "[regions][vdb]") {
+TEST_CASE("level sets: a warning names two that overlap deeper than the narrower band reaches", "[regions][vdb]") {
   const TemporaryFile file("pieces.vdb");
-  write(file.path, {level_set("a", ball(-.35, .6)), level_set("b", ball(.35, .6))});
-  std::string told;
-  read_input(request_for(file.path + ":*"), int64_t(0), [&](MessageKind kind, const std::string& text) {
-    if (kind == MessageKind::warning) told += text;
-  });
-  CHECK(contains(told, "deeper than their bands"));
+  const auto told = [&](double band_vox, double other_vox) {
+    write(file.path, {level_set("a", ball(-.35, .6), 0, band_vox), level_set("b", ball(.353, .6), 0, other_vox)});
+    return warnings_of(request_for(file.path + ":*"));
+  };
+  const std::string warned = "level sets \"a\" and \"b\" overlap deeper than their bands reach";
+  CHECK(contains(told(3, 3), warned));
+  CHECK(contains(told(3, 4), warned));
+  CHECK(contains(told(1, 1), warned));
+  CHECK(told(20, 20).empty());
+}
+
+TEST_CASE("level sets: one that has no voxel is named by a warning, and is no region", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  const auto check_lost = [&](const openvdb::GridPtrVec& grids, const std::string& warned) {
+    write(file.path, grids);
+    CHECK(contains(warnings_of(request_for(file.path + ":*")), warned));
+    const auto names = read(request_for(file.path + ":*")).soup.regions.names;
+    REQUIRE(names.size() == 1);
+    CHECK(names[0].name == "a");
+  };
+  for (const double band_vox : {3., 20.})
+    check_lost({level_set("a", ball(0, .8), 0, band_vox), level_set("inner", ball(.1, .4), 0, band_vox)},
+               "level set \"inner\" lies within \"a\"");
+  check_lost({level_set("a", ball(0, .6)), level_set("b", ball(0, .6))}, "level set \"b\" lies within \"a\"");
+  check_lost({level_set("a", ball(0, .6)), level_set("none", ball(9, .1))}, "level set \"none\" holds no voxel");
+}
+
+TEST_CASE("level sets: those too far apart for one box are refused by name, with or without a limit",
+          "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  for (const int far : {20'000, 4'200'000, 130'000'000}) {
+    write(file.path, {small_ball_at("a", 0), small_ball_at("b", far)});
+    for (const bool unite : {false, true}) {
+      InputRequest request = request_for(file.path + ":*");
+      request.unite = unite;
+      const Error error = error_of([&] { read(request); });
+      CHECK(error.code() == ErrorCode::out_of_memory);
+      CHECK(says(error, "voxels along x, from \"a\" to \"b\""));
+    }
+  }
+  write(file.path, {small_ball_at("a", 0), small_ball_at("b", 16'000)});
+  CHECK(says(error_of([&] { read_input(request_for(file.path + ":*"), int64_t(1'000'000)); }), "raise --max-memory"));
 }
 
 TEST_CASE("level sets: a gap of less than a voxel is closed in its middle, and no slit is left", "[regions][vdb]") {

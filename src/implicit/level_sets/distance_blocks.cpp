@@ -56,7 +56,7 @@ void DistanceBlocks::hold_box(const ScalarField& field, const std::vector<Voxel>
   for (const FieldTile& tile : tiles) hold(tile.origin, tile.size);
   low_ = {low.x >> 3, low.y >> 3, low.z >> 3};
   size_ = {(high.x >> 3) - low_.x, (high.y >> 3) - low_.y, (high.z >> 3) - low_.z};
-  const int32_t longest = kFieldBlock * std::max({size_.x, size_.y, size_.z});
+  const int64_t longest = int64_t(kFieldBlock) * std::max({size_.x, size_.y, size_.z});
   if (longest > 2 * kMaxResolution)
     throw Error(ErrorCode::out_of_memory, "read",
                 field.title() + " has " + std::to_string(longest) + " voxels along an axis; at most " +

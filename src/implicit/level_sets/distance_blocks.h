@@ -37,6 +37,8 @@ class DistanceBlocks {
         for (int32_t z = 0; z < size_.z; ++z)
           if (place_[i++] != kOutside) visit(Voxel{low_.x + x, low_.y + y, low_.z + z});
   }
+  /// The value that says that no surface is near, in voxels.
+  double band_vox() const { return double(outside_); }
   int64_t bytes() const { return int64_t(4 * (place_.size() + values_.size())); }
 
  private:

@@ -3,155 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <sstream>
 #include <utility>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
-#include "geometry/world_vector.h"
-#include "implicit/level_sets/distance_blocks.h"
+#include "implicit/level_sets/level_set_voxels.h"
 #include "isoshell/error.h"
 #include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
 
-constexpr double kWidestGap = 1;  ///< voxels; between level sets that face each other, so that none is left between
-constexpr double kLeastFacing = -0.6;  ///< cosine between slopes: wedges between two that are wider stay open
-constexpr double kTouching = 1. / 64;  ///< voxels: of those that touch a voxel between them may be just outside of both
-constexpr double kLeastSlope = 0.1;    ///< of a difference of distances; where both are as far, nothing has a normal
-constexpr double kDeep = -1.5;         ///< voxels: bands are as wide, or wider
-constexpr int32_t kMargin = 2;         ///< voxels around all that is inside: with gaps, and without walls at the sides
-
 WorldPoint vector_of(Voxel v) { return {double(v.x), double(v.y), double(v.z)}; }
-
-/// What a voxel is nearest to.
-struct Standing {
-  size_t first = 0, second = 0;  ///< numbers of level sets, by their values
-  double first_value = INFINITY, second_value = INFINITY;
-  double united = INFINITY;  ///< of all with their gaps closed: below 0 in any region
-
-  /// The number of a level set and 1, or 0.
-  int32_t label() const { return united < 0 ? int32_t(first) + 1 : 0; }
-  /// Distances are the same in planes alone, unless both are what is said beyond bands.
-  bool is_undecided() const { return first_value == second_value && first_value < kDeep; }
-};
-
-class LevelSetVoxels {
- public:
-  /// What is asked of a voxel needs list_sets().
-  explicit LevelSetVoxels(const std::vector<DistanceBlocks>& sets) : sets_(sets) { find_box(); }
-  void list_sets();
-
-  bool empty() const { return size_.x == 0; }
-  Voxel low() const { return low_; }
-  Voxel size() const { return size_; }
-  int64_t voxels() const { return int64_t(size_.x) * size_.y * size_.z; }
-
-  Standing standing_at(Voxel v) const;
-  /// Of the wall between two voxels with these labels, one step along an axis from one another.
-  WallCrossing crossing(Voxel near, Voxel far, int32_t near_label, int32_t far_label) const;
-
- private:
-  void find_box();
-  size_t block_of(Voxel v) const {
-    const Voxel b{(v.x >> 3) - (low_.x >> 3), (v.y >> 3) - (low_.y >> 3), (v.z >> 3) - (low_.z >> 3)};
-    return (size_t(b.x) * size_t(blocks_.y) + size_t(b.y)) * size_t(blocks_.z) + size_t(b.z);
-  }
-  double united_at(Voxel v, const Standing& standing) const;
-  /// How much less the first label's value is than the second one's.
-  double difference(Voxel v, int32_t label, int32_t other) const;
-  WorldPoint slope_of(Voxel v, int32_t label) const {
-    return label == 0 ? WorldPoint{0, 0, 0} : sets_[size_t(label) - 1].slope(v);
-  }
-
-  const std::vector<DistanceBlocks>& sets_;
-  Voxel low_{0, 0, 0}, size_{0, 0, 0}, blocks_{0, 0, 0};
-  std::vector<std::vector<uint32_t>> sets_in_;  ///< per block those that hold anything there, ascending
-};
-
-void LevelSetVoxels::find_box() {
-  Voxel low{INT32_MAX, INT32_MAX, INT32_MAX}, high{INT32_MIN, INT32_MIN, INT32_MIN};
-  for (const DistanceBlocks& set : sets_)
-    for (const Voxel& v : set.inside_corners()) {
-      low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-      high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-    }
-  if (low.x > high.x) return;
-  low_ = {low.x - kMargin, low.y - kMargin, low.z - kMargin};
-  size_ = {high.x - low.x + 1 + 2 * kMargin, high.y - low.y + 1 + 2 * kMargin, high.z - low.z + 1 + 2 * kMargin};
-}
-
-void LevelSetVoxels::list_sets() {
-  if (empty()) return;
-  const auto along = [](int32_t low, int32_t size) { return ((low + size - 1) >> 3) - (low >> 3) + 1; };
-  blocks_ = {along(low_.x, size_.x), along(low_.y, size_.y), along(low_.z, size_.z)};
-  sets_in_.resize(size_t(blocks_.x) * size_t(blocks_.y) * size_t(blocks_.z));
-  for (uint32_t s = 0; s < sets_.size(); ++s)
-    sets_[s].for_each_block([&](Voxel block) {
-      const Voxel b{block.x - (low_.x >> 3), block.y - (low_.y >> 3), block.z - (low_.z >> 3)};
-      if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= blocks_.x || b.y >= blocks_.y || b.z >= blocks_.z) return;
-      sets_in_[block_of({8 * block.x, 8 * block.y, 8 * block.z})].push_back(s);
-    });
-}
-
-Standing LevelSetVoxels::standing_at(Voxel v) const {
-  Standing found;
-  for (const uint32_t s : sets_in_[block_of(v)]) {
-    const auto value = double(sets_[s].at(v));
-    if (value < found.first_value) {
-      found.second = std::exchange(found.first, s);
-      found.second_value = std::exchange(found.first_value, value);
-    } else if (value < found.second_value) {
-      found.second = s;
-      found.second_value = value;
-    }
-  }
-  found.united = united_at(v, found);
-  return found;
-}
-
-/// Outside of all: how far from the ball between the nearest points of the two nearest, where their gap is closed.
-double LevelSetVoxels::united_at(Voxel v, const Standing& standing) const {
-  const double own = standing.first_value;
-  if (own < 0 || !(standing.second_value < kWidestGap)) return own;
-  const WorldPoint first = normalised(sets_[standing.first].slope(v)),
-                   second = normalised(sets_[standing.second].slope(v));
-  const WorldPoint to_first = -own * first, to_second = -standing.second_value * second;
-  const double gap = length(to_second - to_first);
-  if (gap > kWidestGap || dot(first, second) > kLeastFacing) return own;
-  return std::min(own, length(.5 * (to_first + to_second)) - gap / 2 - kTouching);
-}
-
-/// The background's is 0, but as much more as the closing of a gap lowers the least value.
-double LevelSetVoxels::difference(Voxel v, int32_t label, int32_t other) const {
-  const auto value = [&](int32_t of) {
-    if (of > 0) return double(sets_[size_t(of) - 1].at(v));
-    const Standing standing = standing_at(v);
-    return standing.united < standing.first_value ? standing.first_value - standing.united : 0.;
-  };
-  return value(label) - value(other);
-}
-
-WallCrossing LevelSetVoxels::crossing(Voxel near, Voxel far, int32_t near_label, int32_t far_label) const {
-  WallCrossing found;
-  const double from = difference(near, near_label, far_label), to = difference(far, near_label, far_label);
-  if (!(from <= 0 && to >= 0 && to > from)) return found;
-  const double at = from / (from - to);
-  found.at = float(at);
-  const auto slope = [&](Voxel v) { return slope_of(v, near_label) - slope_of(v, far_label); };
-  const WorldPoint normal = (1 - at) * slope(near) + at * slope(far);
-  const auto is_closed = [&](Voxel v) {
-    const Standing standing = standing_at(v);
-    return standing.united < standing.first_value;
-  };
-  if (length(normal) < kLeastSlope) return found;
-  if ((near_label == 0 || far_label == 0) && (is_closed(near) || is_closed(far))) return found;
-  const WorldPoint unit = normalised(normal);
-  found.normal = {float(unit.x), float(unit.y), float(unit.z)};
-  return found;
-}
 
 double voxel_size_world(const ScalarField& field) { return cube_edge(field.to_world); }
 
@@ -172,23 +39,88 @@ void each_wall(const LabelVolume& volume, int32_t z, const Visit& visit) {
     }
 }
 
-/// Result: how many are undecided.
-int64_t find_labels(const LevelSetVoxels& voxels, LabelVolume& volume, const Context& context) {
+/// What is counted as labels are found.
+struct Counts {
+  std::vector<int64_t> of_set;                             ///< voxels that each level set has
+  std::map<std::pair<size_t, size_t>, int64_t> undecided;  ///< by the level sets that are as deep there
+
+  void add(const Counts& other) {
+    for (size_t s = 0; s < of_set.size(); ++s) of_set[s] += other.of_set[s];
+    for (const auto& [pair, count] : other.undecided) undecided[pair] += count;
+  }
+};
+
+Counts find_labels(const LevelSetVoxels& voxels, size_t sets, LabelVolume& volume, const Context& context) {
   const Voxel size = voxels.size(), low = voxels.low();
   volume.labels.resize(size_t(voxels.voxels()));
-  return sum_over_ranges(size.z, 1, [&](int64_t begin, int64_t end) {
+  Counts all{std::vector<int64_t>(sets), {}};
+  std::mutex adding;
+  for_ranges(size.z, 1, [&](int64_t begin, int64_t end) {
     check_cancel(context, "read");
-    int64_t undecided = 0;
+    Counts counts{std::vector<int64_t>(sets), {}};
     int32_t* to = &volume.labels[size_t(begin) * size_t(size.y) * size_t(size.x)];
     for (auto k = int32_t(begin); k < int32_t(end); ++k)
       for (int32_t j = 0; j < size.y; ++j)
-        for (int32_t i = 0; i < size.x; ++i) {
-          const Standing standing = voxels.standing_at({low.x + i, low.y + j, low.z + k});
-          *to++ = standing.label();
-          undecided += standing.is_undecided();
+        for (int32_t i = 0; i < size.x;) {
+          const Voxel row{low.x + i, low.y + j, low.z + k};
+          const std::vector<uint32_t>& sets_around = voxels.sets_around(row);
+          const int32_t end_of_block = std::min(size.x, i + kFieldBlock - (row.x & (kFieldBlock - 1)));
+          for (; i < end_of_block; ++i) {
+            const Standing standing = voxels.standing_at({low.x + i, row.y, row.z}, sets_around);
+            *to++ = standing.label();
+            if (standing.label() > 0) ++counts.of_set[standing.first];
+            if (voxels.is_undecided(standing)) ++counts.undecided[std::minmax(standing.first, standing.second)];
+          }
         }
-    return undecided;
+    const std::lock_guard<std::mutex> lock(adding);
+    all.add(counts);
   });
+  return all;
+}
+
+/// Which level set has most of the inside of one that has no voxel.
+size_t holder_of(const LevelSetVoxels& voxels, size_t set, size_t sets, const LabelVolume& volume) {
+  std::vector<int64_t> counts(sets + 1);
+  const std::vector<Voxel>& corners = voxels.set(set).inside_corners();
+  const Voxel low = voxels.low(), size = voxels.size();
+  for (int32_t z = corners[0].z; z <= corners[1].z; ++z)
+    for (int32_t y = corners[0].y; y <= corners[1].y; ++y)
+      for (int32_t x = corners[0].x; x <= corners[1].x; ++x)
+        if (voxels.set(set).at({x, y, z}) < 0)
+          ++counts[size_t(volume.labels[size_t((int64_t(z - low.z) * size.y + y - low.y) * size.x + x - low.x)])];
+  return size_t(std::max_element(counts.begin() + 1, counts.end()) - counts.begin()) - 1;
+}
+
+/// Of each level set that has no voxel, and of pairs that no values tell apart.
+std::vector<std::string> warnings_of(const LevelSetVoxels& voxels, const std::vector<std::string>& names,
+                                     const LabelVolume& volume, const Counts& counts) {
+  std::vector<std::string> warnings;
+  const auto quoted = [&](size_t set) { return '"' + names[set] + '"'; };
+  for (size_t s = 0; s < names.size(); ++s) {
+    if (counts.of_set[s] > 0) continue;
+    if (voxels.set(s).inside_corners().empty())
+      warnings.push_back("level set " + quoted(s) +
+                         " holds no voxel, as none of its values is below 0: it is no region");
+    else
+      warnings.push_back("level set " + quoted(s) + " lies within " +
+                         quoted(holder_of(voxels, s, names.size(), volume)) +
+                         ", which has all its space: it is no region; take it away from the one around it");
+  }
+  int64_t all = 0, most = 0, pairs = 0;
+  std::pair<size_t, size_t> worst;
+  for (const auto& [pair, count] : counts.undecided) {
+    if (counts.of_set[pair.first] == 0 || counts.of_set[pair.second] == 0) continue;
+    all += count;
+    ++pairs;
+    if (count > most) most = count, worst = pair;
+  }
+  if (pairs > 0)
+    warnings.push_back("level sets " + quoted(worst.first) + " and " + quoted(worst.second) +
+                       (pairs > 1 ? ", and " + counted(pairs - 1, "other pair") + "," : "") +
+                       " overlap deeper than their bands reach, in " + counted(all, "voxel") +
+                       ": there the first one has the space, up to a wall that no values place; make the bands of all "
+                       "level sets wider");
+  return warnings;
 }
 
 void find_crossings(const LevelSetVoxels& voxels, LabelVolume& volume, const Context& context) {
@@ -269,14 +201,13 @@ LabelsOfLevelSets labels_of_level_sets(LevelSets sets, const Context& context) {
   const AffineMap map = sets.fields.front()->to_world;
   const std::vector<std::string> names = std::move(sets.names);
   const std::vector<DistanceBlocks> blocks = distance_blocks_of(std::move(sets), context);
-  LevelSetVoxels voxels(blocks);
+  const LevelSetVoxels voxels(blocks, names, file);
   if (voxels.empty())
     throw Error(ErrorCode::nothing_to_mesh, "read",
                 file + ": no value of its level sets is below 0: none has an inside");
   int64_t bytes = 4 * voxels.voxels();
   for (const DistanceBlocks& set : blocks) bytes += set.bytes();
   check_memory(bytes, file, context);
-  voxels.list_sets();
   LabelsOfLevelSets made;
   LabelVolume& volume = made.volume;
   volume.size_vox = {voxels.size().x, voxels.size().y, voxels.size().z};
@@ -287,8 +218,10 @@ LabelsOfLevelSets labels_of_level_sets(LevelSets sets, const Context& context) {
     origin[i] = map.at[i][0] * low.x + map.at[i][1] * low.y + map.at[i][2] * low.z + map.at[i][3];
   }
   volume.origin_world = {origin[0], origin[1], origin[2]};
-  for (size_t s = 0; s < names.size(); ++s) volume.names.push_back({int32_t(s) + 1, names[s]});
-  made.undecided_vox = find_labels(voxels, volume, context);
+  const Counts counts = find_labels(voxels, names.size(), volume, context);
+  for (size_t s = 0; s < names.size(); ++s)
+    if (counts.of_set[s] > 0) volume.names.push_back({int32_t(s) + 1, names[s]});
+  made.warnings = warnings_of(voxels, names, volume, counts);
   find_crossings(voxels, volume, context);
   return made;
 }

@@ -5,15 +5,16 @@
 #include <cmath>
 #include <utility>
 
-#include "implicit/level_sets/distance_blocks.h"
+#include "implicit/level_sets/level_set_voxels.h"
 
 namespace isoshell {
 namespace {
 
 class UnitedField : public ScalarField {
  public:
-  UnitedField(std::vector<DistanceBlocks> sets, double voxel_size_world)
-      : sets_(std::move(sets)), voxel_size_world_(voxel_size_world) {
+  UnitedField(std::vector<DistanceBlocks> sets, const std::vector<std::string>& names, const std::string& of_file,
+              double voxel_size_world)
+      : sets_(std::move(sets)), voxels_(sets_, names, of_file), voxel_size_world_(voxel_size_world) {
     for (const DistanceBlocks& set : sets_)
       set.for_each_block([&](Voxel b) {
         const Voxel origin{kFieldBlock * b.x, kFieldBlock * b.y, kFieldBlock * b.z};
@@ -29,12 +30,13 @@ class UnitedField : public ScalarField {
   std::vector<Voxel> blocks() const override { return block_; }
   std::vector<FieldTile> tiles() const override {
     std::vector<FieldTile> tiles;
-    for (const Voxel& v : tile_) tiles.push_back({v, kFieldBlock, value_at(v)});
+    for (const Voxel& v : tile_) tiles.push_back({v, kFieldBlock, value_at(v, voxels_.sets_around(v))});
     return tiles;
   }
   void copy(Voxel origin, const int size[3], float* to) const override {
+    const std::vector<uint32_t>& sets_around = voxels_.sets_around(origin);
     copy_block(size, to, [&](int i) {
-      return value_at({origin.x + (i >> 6), origin.y + (i >> 3 & 7), origin.z + (i & 7)});
+      return value_at({origin.x + (i >> 6), origin.y + (i >> 3 & 7), origin.z + (i & 7)}, sets_around);
     });
   }
 
@@ -44,13 +46,12 @@ class UnitedField : public ScalarField {
     std::sort(list.begin(), list.end(), before);
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
-  float value_at(Voxel v) const {
-    float least = INFINITY;
-    for (const DistanceBlocks& set : sets_) least = std::min(least, set.at(v));
-    return float(voxel_size_world_ * double(least));
+  float value_at(Voxel v, const std::vector<uint32_t>& sets_around) const {
+    return float(voxel_size_world_ * voxels_.standing_at(v, sets_around).united);
   }
 
   const std::vector<DistanceBlocks> sets_;
+  const LevelSetVoxels voxels_;
   const double voxel_size_world_;
   std::vector<Voxel> block_, tile_;  ///< their smallest corners, sorted
 };
@@ -65,8 +66,10 @@ std::unique_ptr<ScalarField> united_level_sets(LevelSets sets, const Context& co
   double background = first.background;
   std::string name;
   for (const auto& field : sets.fields) background = std::min(background, field->background);
-  for (const std::string& of : sets.names) name += (name.empty() ? "" : ", ") + of;
-  auto united = std::make_unique<UnitedField>(distance_blocks_of(std::move(sets), context), voxel_size_world);
+  const std::vector<std::string> names = sets.names;
+  for (const std::string& of : names) name += (name.empty() ? "" : ", ") + of;
+  auto united =
+      std::make_unique<UnitedField>(distance_blocks_of(std::move(sets), context), names, file, voxel_size_world);
   united->file = file;
   united->name = name;
   united->grid_class = grid_class;
