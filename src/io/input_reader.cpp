@@ -105,7 +105,9 @@ void InputReader::read(const InputRequest& request) {
   if (!known)
     refuse(path + ": the format '" + format + "' is not one of " + listed_formats(reads_anything, ", ") +
            "; say which by --input-format" + python_remedy(path, false));
-  if (known->reads_mesh && known->reads_points)
+  if (is_for_level_sets(request))
+    read_volume_file(request);
+  else if (known->reads_mesh && known->reads_points)
     read_ply(request);
   else if (known->reads_mesh)
     hold(read_mesh(path, format, context_.memory_limit_bytes));
@@ -273,6 +275,7 @@ void InputReader::read_several(const MeshSource& source, const InputRequest& req
     files.push_back({others.back().get(), other.grid});
   }
   LevelSets sets = read_level_sets(files, context_.memory_limit_bytes);
+  for (const std::string& warning : sets.warnings) warn(warning);
   const std::string origin = counted(int64_t(sets.names.size()), "level set") + ", ";
   if (request.unite)
     return hold_volume(false, [&](VolumeInfo& volume) {

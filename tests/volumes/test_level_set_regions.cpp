@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 
 #include "io/level_sets.h"
@@ -246,6 +247,26 @@ TEST_CASE("level sets: their union is one surface around all of them", "[regions
     CHECK(std::abs(std::min(norm(p.x + .35, p.y, p.z), norm(p.x - .35, p.y, p.z)) - .6) < .2 * kVoxel);
 }
 
+TEST_CASE("level sets: the union of two that touch, or face each other within a voxel, has no wall inside",
+          "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  for (const double gap_vox : {0., .4, .9}) {
+    for (const double off_vox : {0., .27, .5}) {
+      const double middle = off_vox * kVoxel, side = gap_vox * kVoxel / 2;
+      write(file.path, {level_set("a", box(-.8, middle - side)), level_set("b", box(middle + side, .8))});
+      InputRequest request = request_for(file.path + ":*");
+      request.unite = true;
+      const TriangleSoup soup = read(request).soup;
+      INFO("gap of " << gap_vox << " voxels at " << off_vox);
+      bool is_wall = false;
+      for (const WorldPoint& p : soup.vertices)
+        is_wall |= std::abs(p.x) < .7 && std::abs(p.y) < .4 - kVoxel && std::abs(p.z) < .4 - kVoxel;
+      CHECK_FALSE(is_wall);
+      CHECK(farthest_along_y(soup) < .4 + .2 * kVoxel);
+    }
+  }
+}
+
 TEST_CASE("level sets: faces on what pieces were cut from are exterior, others inner", "[regions][vdb]") {
   const TemporaryFile file("pieces.vdb"), whole("whole.vdb");
   write(file.path, {level_set("a", box(-.8, -.1)), level_set("b", box(.1, .8))});
@@ -289,6 +310,37 @@ TEST_CASE("level sets: other transforms, other classes and names that nothing ha
   request = request_for(file.path);
   request.also = {file.path};
   CHECK(says(error_of([&] { read(request); }), "where all of them are level sets"));
+}
+
+TEST_CASE("level sets: those of a pattern that are flawed are refused, and other volumes named", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  auto other = level_set("piece2", ball(.5, .4));
+  other->setGridClass(openvdb::GRID_UNKNOWN);
+  write(file.path, {level_set("piece1", ball(-.5, .4)), other});
+  CHECK(contains(warnings_of(request_for(file.path + ":piece*")), "\"piece*\": \"piece2\" (float, unknown)"));
+  auto flawed = openvdb::Int32Grid::create(3);
+  flawed->setName("piece2");
+  flawed->setGridClass(openvdb::GRID_LEVEL_SET);
+  flawed->tree().setValue({0, 0, 0}, -1);
+  write(file.path, {level_set("piece1", ball(-.5, .4)), flawed});
+  CHECK(says(error_of([&] { read(request_for(file.path + ":piece*")); }),
+             "level set \"piece2\" (int32, level set) has a name like \"piece*\", but holds integers"));
+}
+
+TEST_CASE("level sets: files of other formats are refused with a remedy", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb"), mesh("mesh.obj"), packed("packed.nvdb");
+  write(file.path, {level_set("a", ball(0, .5))});
+  std::ofstream(mesh.path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(packed.path, std::ios::binary) << "NanoVDB0 and more bytes of what no reader comes to";
+  const auto refusal = [&](const std::string& name, const std::string& also) {
+    InputRequest request = request_for(name);
+    if (!also.empty()) request.also = {also};
+    return error_of([&] { read(request); });
+  };
+  CHECK(says(refusal(file.path, mesh.path), "are read of .vdb files; this is none by its name"));
+  CHECK(says(refusal(mesh.path, file.path), "are read of .vdb files; this is none by its name"));
+  CHECK(says(refusal(packed.path + ":*", ""), "are read of .vdb files; convert it"));
+  CHECK(says(refusal(file.path, packed.path), "are read of .vdb files; convert it"));
 }
 
 TEST_CASE("level sets: patterns stand for names as a shell's do", "[vdb][unit]") {

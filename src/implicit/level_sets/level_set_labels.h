@@ -16,6 +16,7 @@ namespace isoshell {
 struct LevelSets {
   std::vector<std::unique_ptr<ScalarField>> fields;
   std::vector<std::string> names;
+  std::vector<std::string> warnings;  ///< of what was read
 };
 
 /// Their values, in voxels; frees the fields. Throws: usage for level sets of different transforms, or whose voxels are

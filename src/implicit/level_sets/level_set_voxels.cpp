@@ -19,7 +19,21 @@ constexpr double kLeastSlope = 0.1;    ///< of a difference of distances; where 
 constexpr int32_t kMargin = 2;         ///< voxels around all that is inside: with gaps, and without walls at the sides
 constexpr double kOfOneValue = 1e-4;   ///< voxels: what values beyond a band differ by, as they are rounded
 
+constexpr double kDepth = 2;  ///< voxels: how far behind a closed gap values are looked at
+
 std::array<int32_t, 3> axes_of(Voxel v) { return {v.x, v.y, v.z}; }
+
+/// Linear between voxels.
+double sampled(const DistanceBlocks& set, const WorldPoint& p) {
+  const Voxel low{int32_t(std::floor(p.x)), int32_t(std::floor(p.y)), int32_t(std::floor(p.z))};
+  const double x = p.x - low.x, y = p.y - low.y, z = p.z - low.z;
+  double sum = 0;
+  for (int32_t i = 0; i < 8; ++i) {
+    const int32_t a = i & 1, b = i >> 1 & 1, c = i >> 2;
+    sum += (a ? x : 1 - x) * (b ? y : 1 - y) * (c ? z : 1 - z) * double(set.at({low.x + a, low.y + b, low.z + c}));
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -48,8 +62,8 @@ void LevelSetVoxels::find_box(const std::vector<std::string>& names, const std::
     const int64_t voxels = most - least + 1 + 2 * kMargin;
     if (voxels > 2 * kMaxResolution)
       throw Error(ErrorCode::out_of_memory, "read",
-                  file + ": the box around its level sets has " + with_commas(voxels) + " voxels along " +
-                      "xyz"[axis] + ", from \"" + names[lowest] + "\" to \"" + names[highest] + "\"; at most " +
+                  file + ": the box around its level sets has " + with_commas(voxels) + " voxels along " + "xyz"[axis] +
+                      ", from \"" + names[lowest] + "\" to \"" + names[highest] + "\"; at most " +
                       with_commas(2 * kMaxResolution) +
                       " are taken: name level sets that are nearer to each other, or resample them coarser");
     low[axis] = int32_t(least - kMargin);
@@ -100,6 +114,19 @@ double LevelSetVoxels::united_at(Voxel v, const Standing& standing) const {
   const double gap = length(to_second - to_first);
   if (gap > kWidestGap || dot(first, second) > kLeastFacing) return own;
   return std::min(own, length(.5 * (to_first + to_second)) - gap / 2 - kTouching);
+}
+
+double LevelSetVoxels::depth_at(Voxel v, const Standing& standing) const {
+  const double first = standing.first_value, second = standing.second_value;
+  if (!(first > -kDepth && second < kDepth + kWidestGap && std::abs(first + second) <= kWidestGap))
+    return standing.united;
+  const DistanceBlocks &one = sets_[standing.first], &other = sets_[standing.second];
+  const WorldPoint up = normalised(one.slope(v)), down = normalised(other.slope(v));
+  if (dot(up, down) > kLeastFacing) return standing.united;
+  const WorldPoint across = normalised(up - down), at{double(v.x), double(v.y), double(v.z)};
+  const double within =
+      std::max(sampled(one, at - (first + kDepth) * across), sampled(other, at + (second + kDepth) * across));
+  return std::min(standing.united, within);
 }
 
 /// The background's is 0, but as much more as the closing of a gap lowers the least value.

@@ -42,6 +42,9 @@ class LevelSetVoxels {
   const std::vector<uint32_t>& sets_around(Voxel v) const;
   Standing standing_at(Voxel v, const std::vector<uint32_t>& sets_around) const;
   Standing standing_at(Voxel v) const { return standing_at(v, sets_around(v)); }
+  /// The united value, but beside a gap that is closed, or two that touch, how deep it is below the surface around
+  /// both: the values of either say how far their walls are, which are none of the union.
+  double depth_at(Voxel v, const Standing& standing) const;
   /// Whether it is so deep in two that both have the value beyond the narrowest band, which places no wall.
   bool is_undecided(const Standing& standing) const;
   /// Of the wall between two voxels with these labels, one step along an axis from one another.
@@ -57,7 +60,9 @@ class LevelSetVoxels {
 
   void find_box(const std::vector<std::string>& names, const std::string& file);
   void list_sets();
-  double value(size_t set, Voxel v) const { return std::clamp(double(sets_[set].at(v)), -narrowest_band_, narrowest_band_); }
+  double value(size_t set, Voxel v) const {
+    return std::clamp(double(sets_[set].at(v)), -narrowest_band_, narrowest_band_);
+  }
   double united_at(Voxel v, const Standing& standing) const;
   /// How much less the first label's value is than the second one's.
   double difference(Voxel v, int32_t label, int32_t other) const;
@@ -67,7 +72,7 @@ class LevelSetVoxels {
 
   const std::vector<DistanceBlocks>& sets_;
   Voxel low_{0, 0, 0}, size_{0, 0, 0};
-  double narrowest_band_ = INFINITY;  ///< voxels; of those that have an inside
+  double narrowest_band_ = INFINITY;                                     ///< voxels; of those that have an inside
   std::unordered_map<Voxel, std::vector<uint32_t>, BlockHash> sets_in_;  ///< by the coordinates of a block over 8
 };
 

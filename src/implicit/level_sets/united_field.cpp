@@ -47,7 +47,7 @@ class UnitedField : public ScalarField {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
   float value_at(Voxel v, const std::vector<uint32_t>& sets_around) const {
-    return float(voxel_size_world_ * voxels_.standing_at(v, sets_around).united);
+    return float(voxel_size_world_ * voxels_.depth_at(v, voxels_.standing_at(v, sets_around)));
   }
 
   const std::vector<DistanceBlocks> sets_;
