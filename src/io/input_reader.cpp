@@ -278,9 +278,9 @@ void InputReader::read_several(const MeshSource& source, const InputRequest& req
   for (const std::string& warning : sets.warnings) warn(warning);
   const std::string origin = counted(int64_t(sets.names.size()), "level set") + ", ";
   if (request.unite)
-    return hold_volume(false, [&](VolumeInfo& volume) {
+    return hold_volume(request.keep_open, [&](VolumeInfo& volume) {
       const std::unique_ptr<ScalarField> field = united_level_sets(std::move(sets), context_);
-      return surface_of_field(*field, {"", {}, context_.memory_limit_bytes, request.creases}, volume);
+      return surface_of_field(*field, options_of(request, context_), volume);
     });
   if (const char* const option = request.labels.given_of_labels())
     refuse_use(std::string(option) + " is for volumes of labels; level sets have places of their own for walls");
@@ -292,7 +292,11 @@ void InputReader::read_several(const MeshSource& source, const InputRequest& req
   hold(std::move(labels), origin, request.reference.empty() ? nullptr : &crossings);
   if (request.reference.empty()) return;
   const Input reference = read_input(named_input(request.reference), context_, tell_);
-  mark_faces_on_reference(reference.soup, request.reference, crossings, lattice, input_.soup);
+  const double off_vox = mark_faces_on_reference(reference.soup, request.reference, crossings, lattice, input_.soup);
+  if (off_vox > 0)
+    warn("no face lies on the reference " + request.reference + ", so all are inner: the nearest is " +
+         readable_length(off_vox) +
+         " voxels from it, or faces the other way; is it what the level sets were cut from?");
 }
 
 void InputReader::read_grids(const MeshSource& source, const InputRequest& request, const std::string& meshed) {

@@ -267,6 +267,27 @@ TEST_CASE("level sets: the union of two that touch, or face each other within a 
   }
 }
 
+TEST_CASE("level sets: a union of what was clipped is left open there where borders are kept", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  const Distance whole = ball(0, .6);
+  write(file.path, {level_set("a", [&](const WorldPoint& p) { return p.x < .1 ? whole(p) : .15; }),
+                    level_set("b", ball(-.4, .3))});
+  InputRequest request = request_for(file.path + ":*");
+  request.unite = true;
+  const auto faces_at_side = [&] {
+    const TriangleSoup soup = read(request).soup;
+    return std::count_if(soup.triangles.begin(), soup.triangles.end(), [&](const auto& triangle) {
+      return std::all_of(triangle.begin(), triangle.end(), [&](uint32_t v) {
+        const WorldPoint& p = soup.vertices[v];
+        return p.x > 0 && norm(0, p.y, p.z) < .4;
+      });
+    });
+  };
+  CHECK(faces_at_side() > 0);
+  request.keep_open = true;
+  CHECK(faces_at_side() == 0);
+}
+
 TEST_CASE("level sets: faces on what pieces were cut from are exterior, others inner", "[regions][vdb]") {
   const TemporaryFile file("pieces.vdb"), whole("whole.vdb");
   write(file.path, {level_set("a", box(-.8, -.1)), level_set("b", box(.1, .8))});
@@ -341,6 +362,34 @@ TEST_CASE("level sets: files of other formats are refused with a remedy", "[regi
   CHECK(says(refusal(mesh.path, file.path), "are read of .vdb files; this is none by its name"));
   CHECK(says(refusal(packed.path + ":*", ""), "are read of .vdb files; convert it"));
   CHECK(says(refusal(file.path, packed.path), "are read of .vdb files; convert it"));
+}
+
+TEST_CASE("level sets: one that holds its band alone is refused with a remedy, one that was clipped is not",
+          "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  const double band = 3 * kVoxel;
+  const Distance whole = ball(0, .6);
+  const auto alone = level_set("a", [&](const WorldPoint& p) { return whole(p) > -band ? whole(p) : band; });
+  write(file.path, {alone, level_set("b", ball(.9, .3))});
+  for (const bool unite : {false, true}) {
+    InputRequest request = request_for(file.path + ":*");
+    request.unite = unite;
+    CHECK(says(error_of([&] { read(request); }), "grid \"a\" has the value of the outside, 0.15"));
+  }
+  write(file.path, {level_set("a", [&](const WorldPoint& p) { return p.x < 0 ? whole(p) : band; }),
+                    level_set("thin", [](const WorldPoint& p) { return p.y < 0 ? ball(.9, .12)(p) : .15; })});
+  CHECK(read(request_for(file.path + ":*")).soup.regions.names.size() == 2);
+}
+
+TEST_CASE("level sets: a reference that no face lies on is warned of, with the distance", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb"), whole("whole.vdb");
+  write(file.path, {level_set("a", box(-.8, -.1)), level_set("b", box(.1, .6))});
+  write(whole.path, {level_set("surface", ball(1.05, .2))});
+  InputRequest request = request_for(file.path + ":*");
+  request.reference = whole.path;
+  const std::string told = warnings_of(request);
+  CHECK(contains(told, "no face lies on the reference " + whole.path));
+  CHECK(contains(told, "the nearest is 5"));
 }
 
 TEST_CASE("level sets: patterns stand for names as a shell's do", "[vdb][unit]") {

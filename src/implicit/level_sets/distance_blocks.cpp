@@ -41,6 +41,10 @@ DistanceBlocks::DistanceBlocks(const ScalarField& field, double voxel_size_world
   }
   hold_values(field, blocks, voxel_size_world);
   find_inside();
+  if (!is_filled())
+    throw Error(ErrorCode::usage, "read",
+                field.title() + " has the value of the outside, " + readable_length(field.background) +
+                    ", inside of its band, too; give it an inside, as OpenVDB's signedFloodFill does");
 }
 
 void DistanceBlocks::hold_box(const ScalarField& field, const std::vector<Voxel>& blocks,
@@ -97,6 +101,28 @@ void DistanceBlocks::find_inside() {
     }
   });
   if (low.x <= high.x) inside_ = {low, high};
+}
+
+/// False where values fall to the inner end of the band and then are those of the outside. Where a part was clipped off
+/// they end at any depth.
+bool DistanceBlocks::is_filled() const {
+  constexpr float kStepVox = 1.05F;  // values differ by no more from one voxel to the next
+  bool ends_at_outside = false, ends_elsewhere = false;
+  for_each_block([&](Voxel block) {
+    if (is_tile({8 * block.x, 8 * block.y, 8 * block.z})) return;
+    for (int32_t i = 0; i < 512 && !ends_elsewhere; ++i) {
+      const Voxel v{8 * block.x + (i >> 6), 8 * block.y + (i >> 3 & 7), 8 * block.z + (i & 7)};
+      const float value = at(v);
+      if (!(value < 0)) continue;
+      for (const Voxel& step : {Voxel{1, 0, 0}, Voxel{0, 1, 0}, Voxel{0, 0, 1}})
+        for (const int32_t way : {-1, 1}) {
+          const float next = at({v.x + way * step.x, v.y + way * step.y, v.z + way * step.z});
+          if (next < outside_ || next - value < 2 * kStepVox) continue;
+          (value < kStepVox - outside_ ? ends_at_outside : ends_elsewhere) = true;
+        }
+    }
+  });
+  return !ends_at_outside || ends_elsewhere;
 }
 
 WorldPoint DistanceBlocks::slope(Voxel v) const {

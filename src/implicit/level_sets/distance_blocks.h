@@ -13,7 +13,7 @@ class DistanceBlocks {
   /// Values that are no numbers are those of the background. Cost: linear in the blocks, and 4 bytes for each block of
   /// the box around them. Throws: unreadable_input for a block farther out than kFieldReach; out_of_memory where that
   /// box has more than twice kMaxResolution voxels along an axis, or it all takes more than `most_bytes`, unless these
-  /// are 0.
+  /// are 0; usage where the values inside of the band are those of the outside.
   DistanceBlocks(const ScalarField& field, double voxel_size_world, int64_t most_bytes);
 
   /// Below 0 inside.
@@ -56,6 +56,7 @@ class DistanceBlocks {
                 int64_t most_bytes);
   void hold_values(const ScalarField& field, const std::vector<Voxel>& blocks, double voxel_size_world);
   void find_inside();
+  bool is_filled() const;
 
   float outside_;
   Voxel low_{0, 0, 0}, size_{0, 0, 0};  ///< of the box of blocks, in blocks

@@ -2,6 +2,7 @@
 #include "implicit/level_sets/reference_faces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/parallel_ranges.h"
@@ -79,11 +80,25 @@ void flip_strips(const TriangleSoup& walls, const EdgeSides& edges, uint8_t valu
     if (of[t] == value && !is_wide[part[t]] && is_bordering[part[t]]) of[t] = 1 - value;
 }
 
+/// From the reference to the nearest face between a region and the background.
+double nearest_vox(const TriangleGrid& grid, const std::vector<WallCrossing>& crossings, const LabelVolume& lattice,
+                   const TriangleSoup& walls) {
+  const double distance_sq = joined_over(
+      crossings.size(), double(INFINITY),
+      [&](size_t t) {
+        return walls.regions.labels[t][1] == walls.regions.background
+                   ? grid.distance_sq(place_of(crossings[t], lattice))
+                   : double(INFINITY);
+      },
+      [](double a, double b) { return std::min(a, b); });
+  return std::sqrt(distance_sq) / length(lattice.step_world[0]);
+}
+
 }  // namespace
 
-void mark_faces_on_reference(const TriangleSoup& reference, const std::string& name,
-                             const std::vector<WallCrossing>& crossings, const LabelVolume& lattice,
-                             TriangleSoup& walls) {
+double mark_faces_on_reference(const TriangleSoup& reference, const std::string& name,
+                               const std::vector<WallCrossing>& crossings, const LabelVolume& lattice,
+                               TriangleSoup& walls) {
   if (reference.triangles.empty())
     throw Error(ErrorCode::nothing_to_mesh, "read", name + ": the reference has no triangle; give a mesh or level set");
   const TriangleGrid grid(reference.vertices, reference.triangles);
@@ -111,6 +126,8 @@ void mark_faces_on_reference(const TriangleSoup& reference, const std::string& n
   material.labels = {"exterior", "inner"};
   material.values.assign(of.begin(), of.end());
   walls.attributes.push_back(std::move(material));
+  if (std::find(of.begin(), of.end(), kExterior) != of.end()) return 0;
+  return nearest_vox(grid, crossings, lattice, walls);
 }
 
 }  // namespace isoshell

@@ -11,8 +11,9 @@ namespace isoshell {
 /// and a sort of edges. Throws: nothing_to_mesh for a reference without a triangle.
 /// What counts is where each face crosses a line between centres of voxels, `crossings` of the volume of labels: faces
 /// of one side then have vertices on it, or on its edges.
-void mark_faces_on_reference(const TriangleSoup& reference, const std::string& name,
-                             const std::vector<WallCrossing>& crossings, const LabelVolume& lattice,
-                             TriangleSoup& walls);
+/// Result: 0, or where no face is exterior how far the nearest one to the background is from the reference, in voxels.
+double mark_faces_on_reference(const TriangleSoup& reference, const std::string& name,
+                               const std::vector<WallCrossing>& crossings, const LabelVolume& lattice,
+                               TriangleSoup& walls);
 
 }  // namespace isoshell
