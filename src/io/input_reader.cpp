@@ -18,6 +18,7 @@
 #include "geometry/given_surface.h"
 #include "geometry/world_vector.h"
 #include "implicit/labels/label_surface.h"
+#include "implicit/level_sets/level_set_labels.h"
 #include "implicit/level_sets/reference_faces.h"
 #include "implicit/level_sets/united_field.h"
 #include "io/faces/face_collector.h"
@@ -279,12 +280,12 @@ void InputReader::read_several(const MeshSource& source, const InputRequest& req
   const std::string origin = counted(int64_t(sets.names.size()), "level set") + ", ";
   if (request.unite)
     return hold_volume(request.keep_open, [&](VolumeInfo& volume) {
-      const std::unique_ptr<ScalarField> field = united_level_sets(std::move(sets), context_);
+      const std::unique_ptr<ScalarField> field = united_level_sets(std::move(sets));
       return surface_of_field(*field, options_of(request, context_), volume);
     });
   if (const char* const option = request.labels.given_of_labels())
     refuse_use(std::string(option) + " is for volumes of labels; level sets have places of their own for walls");
-  auto [labels, warnings] = labels_of_level_sets(std::move(sets), context_);
+  auto [labels, warnings] = labels_of_level_sets(sets, context_);
   for (const std::string& warning : warnings) warn(warning);
   if (request.labels.smallest_island_vox) labels.smallest_island_vox = *request.labels.smallest_island_vox;
   const LabelVolume lattice{labels.size_vox, {}, labels.origin_world, labels.step_world};

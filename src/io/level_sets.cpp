@@ -11,6 +11,7 @@
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/file_format.h"
+#include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
@@ -72,6 +73,18 @@ std::unique_ptr<ScalarField> read_level_set(const MeshSource& source, const std:
   return field;
 }
 
+void add_grid(const MeshSource& source, const std::string& grid, int64_t memory_limit_bytes, LevelSets& sets) {
+  const int64_t left_bytes = left_beside(sets, memory_limit_bytes);
+  try {
+    add_level_set(*read_level_set(source, grid, left_bytes), grid, memory_limit_bytes, sets);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::out_of_memory || sets.blocks.empty()) throw;
+    throw Error(error.code(), error.stage(),
+                error.what() + ("; this is what is left beside " + counted(int64_t(sets.blocks.size()), "level set")) +
+                    " read before it, which take " + readable_bytes(sets.bytes()));
+  }
+}
+
 }  // namespace
 
 bool is_for_level_sets(const InputRequest& request) { return !request.also.empty() || is_pattern(request.grid); }
@@ -99,8 +112,7 @@ LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory
   std::vector<std::string> stems;
   for (const LevelSetFile& file : files)
     for (const std::string& grid : grids_of(file, sets.warnings)) {
-      sets.fields.push_back(read_level_set(*file.source, grid, memory_limit_bytes));
-      sets.names.push_back(grid);
+      add_grid(*file.source, grid, memory_limit_bytes, sets);
       stems.push_back(std::filesystem::path(file.source->name()).stem().string());
     }
   const std::vector<std::string> names = sets.names;

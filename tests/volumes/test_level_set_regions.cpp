@@ -1,93 +1,17 @@
-// Level sets that are regions together: where walls between them run, what of them is outside, and what is refused.
-#include <openvdb/openvdb.h>
-
+// Level sets that are regions together: where walls between them run, and what of them is outside.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <functional>
 
-#include "io/level_sets.h"
-#include "isoshell/error.h"
-#include "isoshell/io/input.h"
 #include "isoshell/region_census.h"
 #include "isoshell/remesh.h"
 #include "support/catch.h"
+#include "support/level_sets.h"
 #include "support/refusals.h"
 #include "support/temporary_file.h"
 
 using namespace isoshell;
 
 namespace {
-
-constexpr double kVoxel = 0.05;
-using Distance = std::function<double(const WorldPoint&)>;
-
-double norm(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
-
-Distance ball(double x, double radius) {
-  return [=](const WorldPoint& p) { return norm(p.x - x, p.y, p.z) - radius; };
-}
-
-/// From `low` to `high` along x, and as wide as .4 on both sides along y and z.
-Distance box(double low, double high) {
-  return [=](const WorldPoint& p) {
-    const double x = std::abs(p.x - (low + high) / 2) - (high - low) / 2, y = std::abs(p.y) - .4,
-                 z = std::abs(p.z) - .4;
-    const double inside = std::min(0., std::max({x, y, z}));
-    return inside + norm(std::max(x, 0.), std::max(y, 0.), std::max(z, 0.));
-  };
-}
-
-openvdb::FloatGrid::Ptr level_set(const std::string& name, const Distance& distance, double shift = 0,
-                                  double band_vox = 3) {
-  openvdb::initialize();
-  const double band = band_vox * kVoxel;
-  constexpr int kHalf = 27;
-  auto grid = openvdb::FloatGrid::create(float(band));
-  grid->setName(name);
-  grid->setGridClass(openvdb::GRID_LEVEL_SET);
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
-  if (shift != 0) grid->transform().postTranslate({shift, 0, 0});
-  auto voxels = grid->getAccessor();
-  for (int i = -kHalf; i <= kHalf; ++i)
-    for (int j = -kHalf; j <= kHalf; ++j)
-      for (int k = -kHalf; k <= kHalf; ++k) {
-        const double d = distance({i * kVoxel, j * kVoxel, k * kVoxel});
-        if (d >= band) continue;
-        if (d > -band)
-          voxels.setValueOn({i, j, k}, float(d));
-        else
-          voxels.setValueOff({i, j, k}, float(-band));
-      }
-  return grid;
-}
-
-void write(const std::string& path, const openvdb::GridPtrVec& grids) { openvdb::io::File(path).write(grids); }
-
-InputRequest request_for(const std::string& name) { return named_input(name); }
-
-Input read(const InputRequest& request) { return read_input(request, int64_t(0)); }
-
-std::string warnings_of(const InputRequest& request) {
-  std::string told;
-  read_input(request, int64_t(0), [&](MessageKind kind, const std::string& text) {
-    if (kind == MessageKind::warning) told += text + '\n';
-  });
-  return told;
-}
-
-/// Of a few voxels, around one.
-openvdb::FloatGrid::Ptr small_ball_at(const std::string& name, int x) {
-  openvdb::initialize();
-  auto grid = openvdb::FloatGrid::create(3.F);
-  grid->setName(name);
-  grid->setGridClass(openvdb::GRID_LEVEL_SET);
-  auto voxels = grid->getAccessor();
-  for (int i = -6; i <= 6; ++i)
-    for (int j = -6; j <= 6; ++j)
-      for (int k = -6; k <= 6; ++k) voxels.setValue({x + i, j, k}, float(std::clamp(norm(i, j, k) - 4, -3., 3.)));
-  return grid;
-}
 
 /// Of the walls between these two labels: their area, and how far their vertices are from x at most.
 struct Wall {
@@ -159,23 +83,6 @@ TEST_CASE("level sets: one that has no voxel is named by a warning, and is no re
   check_lost({level_set("a", ball(0, .6)), level_set("none", ball(9, .1))}, "level set \"none\" holds no voxel");
 }
 
-TEST_CASE("level sets: those too far apart for one box are refused by name, with or without a limit",
-          "[regions][vdb]") {
-  const TemporaryFile file("pieces.vdb");
-  for (const int far : {20'000, 4'200'000, 130'000'000}) {
-    write(file.path, {small_ball_at("a", 0), small_ball_at("b", far)});
-    for (const bool unite : {false, true}) {
-      InputRequest request = request_for(file.path + ":*");
-      request.unite = unite;
-      const Error error = error_of([&] { read(request); });
-      CHECK(error.code() == ErrorCode::out_of_memory);
-      CHECK(says(error, "voxels along x, from \"a\" to \"b\""));
-    }
-  }
-  write(file.path, {small_ball_at("a", 0), small_ball_at("b", 16'000)});
-  CHECK(says(error_of([&] { read_input(request_for(file.path + ":*"), int64_t(1'000'000)); }), "raise --max-memory"));
-}
-
 TEST_CASE("level sets: a gap of less than a voxel is closed in its middle, and no slit is left", "[regions][vdb]") {
   const TemporaryFile file("pieces.vdb");
   for (const double gap_vox : {0., .4, .9}) {
@@ -219,20 +126,6 @@ TEST_CASE("level sets: a result has closed regions with shared walls and the vol
   for (const RegionCounts& region : census.regions) CHECK(region.closed);
   CHECK(std::abs(census.regions[0].volume_world / (.81 * .64) - 1) < .01);
   CHECK(std::abs(census.regions[1].volume_world / (.79 * .64) - 1) < .01);
-}
-
-TEST_CASE("level sets: those of several files are regions, by the names of grids or of files", "[regions][vdb]") {
-  const TemporaryFile one("one.vdb"), other("other.vdb");
-  write(one.path, {level_set("surface", ball(-.3, .4))});
-  write(other.path, {level_set("surface", ball(.3, .4)), level_set("more", ball(.3, .1))});
-  InputRequest request = request_for(one.path);
-  request.also = {other.path + ":surface"};
-  const Input input = read(request);
-  REQUIRE(input.soup.regions.names.size() == 2);
-  CHECK(contains(input.soup.regions.names[0].name, "one:surface"));
-  CHECK(contains(input.soup.regions.names[1].name, "other:surface"));
-  request.also = {other.path};
-  CHECK(says(error_of([&] { read(request); }), "holds several grids, name one as"));
 }
 
 TEST_CASE("level sets: their union is one surface around all of them", "[regions][vdb]") {
@@ -310,77 +203,6 @@ TEST_CASE("level sets: faces on what pieces were cut from are exterior, others i
   }
 }
 
-TEST_CASE("level sets: other transforms, other classes and names that nothing has are refused", "[regions][vdb]") {
-  const TemporaryFile file("pieces.vdb");
-  const auto refusal = [&](const openvdb::GridPtrVec& grids, const std::string& pattern) {
-    write(file.path, grids);
-    return error_of([&] { read(request_for(file.path + ":" + pattern)); });
-  };
-  const Error shifted = refusal({level_set("a", ball(0, .5)), level_set("b", ball(.2, .5), .01)}, "*");
-  CHECK(shifted.code() == ErrorCode::usage);
-  CHECK(says(shifted, "grid \"b\" has another transform than"));
-  CHECK(says(shifted, "its voxel (0, 0, 0) lies at x = 0.01, not at 0"));
-  CHECK(says(refusal({level_set("a", ball(0, .5))}, "piece*"),
-             "no level set has a name like \"piece*\"; it holds \"a\""));
-  InputRequest request = request_for(file.path + ":*");
-  request.labels.background = 3;
-  CHECK(says(error_of([&] { read(request); }), "--background is for volumes of labels"));
-  auto fog = level_set("a", ball(0, .5));
-  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
-  write(file.path, {fog});
-  request = request_for(file.path);
-  request.also = {file.path};
-  CHECK(says(error_of([&] { read(request); }), "where all of them are level sets"));
-}
-
-TEST_CASE("level sets: those of a pattern that are flawed are refused, and other volumes named", "[regions][vdb]") {
-  const TemporaryFile file("pieces.vdb");
-  auto other = level_set("piece2", ball(.5, .4));
-  other->setGridClass(openvdb::GRID_UNKNOWN);
-  write(file.path, {level_set("piece1", ball(-.5, .4)), other});
-  CHECK(contains(warnings_of(request_for(file.path + ":piece*")), "\"piece*\": \"piece2\" (float, unknown)"));
-  auto flawed = openvdb::Int32Grid::create(3);
-  flawed->setName("piece2");
-  flawed->setGridClass(openvdb::GRID_LEVEL_SET);
-  flawed->tree().setValue({0, 0, 0}, -1);
-  write(file.path, {level_set("piece1", ball(-.5, .4)), flawed});
-  CHECK(says(error_of([&] { read(request_for(file.path + ":piece*")); }),
-             "level set \"piece2\" (int32, level set) has a name like \"piece*\", but holds integers"));
-}
-
-TEST_CASE("level sets: files of other formats are refused with a remedy", "[regions][vdb]") {
-  const TemporaryFile file("pieces.vdb"), mesh("mesh.obj"), packed("packed.nvdb");
-  write(file.path, {level_set("a", ball(0, .5))});
-  std::ofstream(mesh.path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  std::ofstream(packed.path, std::ios::binary) << "NanoVDB0 and more bytes of what no reader comes to";
-  const auto refusal = [&](const std::string& name, const std::string& also) {
-    InputRequest request = request_for(name);
-    if (!also.empty()) request.also = {also};
-    return error_of([&] { read(request); });
-  };
-  CHECK(says(refusal(file.path, mesh.path), "are read of .vdb files; this is none by its name"));
-  CHECK(says(refusal(mesh.path, file.path), "are read of .vdb files; this is none by its name"));
-  CHECK(says(refusal(packed.path + ":*", ""), "are read of .vdb files; convert it"));
-  CHECK(says(refusal(file.path, packed.path), "are read of .vdb files; convert it"));
-}
-
-TEST_CASE("level sets: one that holds its band alone is refused with a remedy, one that was clipped is not",
-          "[regions][vdb]") {
-  const TemporaryFile file("pieces.vdb");
-  const double band = 3 * kVoxel;
-  const Distance whole = ball(0, .6);
-  const auto alone = level_set("a", [&](const WorldPoint& p) { return whole(p) > -band ? whole(p) : band; });
-  write(file.path, {alone, level_set("b", ball(.9, .3))});
-  for (const bool unite : {false, true}) {
-    InputRequest request = request_for(file.path + ":*");
-    request.unite = unite;
-    CHECK(says(error_of([&] { read(request); }), "grid \"a\" has the value of the outside, 0.15"));
-  }
-  write(file.path, {level_set("a", [&](const WorldPoint& p) { return p.x < 0 ? whole(p) : band; }),
-                    level_set("thin", [](const WorldPoint& p) { return p.y < 0 ? ball(.9, .12)(p) : .15; })});
-  CHECK(read(request_for(file.path + ":*")).soup.regions.names.size() == 2);
-}
-
 TEST_CASE("level sets: a reference that no face lies on is warned of, with the distance", "[regions][vdb]") {
   const TemporaryFile file("pieces.vdb"), whole("whole.vdb");
   write(file.path, {level_set("a", box(-.8, -.1)), level_set("b", box(.1, .6))});
@@ -390,14 +212,4 @@ TEST_CASE("level sets: a reference that no face lies on is warned of, with the d
   const std::string told = warnings_of(request);
   CHECK(contains(told, "no face lies on the reference " + whole.path));
   CHECK(contains(told, "the nearest is 5"));
-}
-
-TEST_CASE("level sets: patterns stand for names as a shell's do", "[vdb][unit]") {
-  CHECK(fits("piece_1", "piece*"));
-  CHECK(fits("piece_1", "*_?"));
-  CHECK(fits("", "*"));
-  CHECK(fits("abcabd", "*ab?"));
-  CHECK_FALSE(fits("piece_1", "piece"));
-  CHECK_FALSE(fits("piece_10", "piece_?"));
-  CHECK_FALSE(fits("", "?"));
 }

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <sstream>
 #include <utility>
 
 #include "core/parallel_ranges.h"
@@ -19,8 +18,6 @@ namespace isoshell {
 namespace {
 
 WorldPoint vector_of(Voxel v) { return {double(v.x), double(v.y), double(v.z)}; }
-
-double voxel_size_world(const ScalarField& field) { return cube_edge(field.to_world); }
 
 /// Calls visit(near, far, axis) for the pairs of voxels along which a wall runs whose far one has this z, ascending as
 /// WallCrossing::face is. Voxels are those of the volume.
@@ -151,63 +148,17 @@ void check_memory(int64_t bytes, const std::string& file, const Context& context
                   "; raise --max-memory, or resample them coarser");
 }
 
-void check_same_lattice(const LevelSets& sets) {
-  const auto refuse = [](const std::string& text) { throw Error(ErrorCode::usage, "read", text); };
-  const ScalarField& first = *sets.fields.front();
-  for (const auto& field : sets.fields) {
-    if (!(voxel_size_world(*field) > 0))
-      refuse(field->title() + " has voxels that are no cubes; level sets that are regions together have cubes");
-    if (!(field->background > 0))
-      refuse(field->title() +
-             " has a background of 0 or less, which says nothing of what lies beyond its band; give it the width of "
-             "the band");
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 4; ++j) {
-        const double one = first.to_world.at[i][j], other = field->to_world.at[i][j];
-        if (std::abs(one - other) <= 1e-6 * voxel_size_world(first)) continue;
-        std::ostringstream text;
-        text << field->title() << " has another transform than " << first.title() << ": ";
-        if (j == 3)
-          text << "its voxel (0, 0, 0) lies at "
-               << "xyz"[i] << " = " << other << ", not at " << one;
-        else
-          text << "its steps from voxel to voxel differ, " << other << " from " << one << " along "
-               << "xyz"[i];
-        text << "; resample one on the lattice of the other, as OpenVDB's resampleToMatch does";
-        refuse(text.str());
-      }
-  }
-}
-
 }  // namespace
 
-std::vector<DistanceBlocks> distance_blocks_of(LevelSets sets, const Context& context) {
-  check_same_lattice(sets);
-  const std::string file = sets.fields.front()->file;
-  const double voxel_size = voxel_size_world(*sets.fields.front());
-  std::vector<DistanceBlocks> blocks;
-  int64_t bytes = 0;
-  for (auto& field : sets.fields) {
-    check_memory(bytes, file, context);
-    blocks.emplace_back(*field, voxel_size, std::max<int64_t>(context.memory_limit_bytes - bytes, 0));
-    bytes += blocks.back().bytes();
-    field.reset();
-  }
-  return blocks;
-}
-
-LabelsOfLevelSets labels_of_level_sets(LevelSets sets, const Context& context) {
-  const std::string file = sets.fields.front()->file;
-  const AffineMap map = sets.fields.front()->to_world;
-  const std::vector<std::string> names = std::move(sets.names);
-  const std::vector<DistanceBlocks> blocks = distance_blocks_of(std::move(sets), context);
-  const LevelSetVoxels voxels(blocks, names, file);
+LabelsOfLevelSets labels_of_level_sets(const LevelSets& sets, const Context& context) {
+  const std::string& file = sets.file;
+  const AffineMap& map = sets.to_world;
+  const std::vector<std::string>& names = sets.names;
+  const LevelSetVoxels voxels(sets.blocks, names, file);
   if (voxels.empty())
     throw Error(ErrorCode::nothing_to_mesh, "read",
                 file + ": no value of its level sets is below 0: none has an inside");
-  int64_t bytes = 4 * voxels.voxels();
-  for (const DistanceBlocks& set : blocks) bytes += set.bytes();
-  check_memory(bytes, file, context);
+  check_memory(4 * voxels.voxels() + sets.bytes(), file, context);
   LabelsOfLevelSets made;
   LabelVolume& volume = made.volume;
   volume.size_vox = {voxels.size().x, voxels.size().y, voxels.size().z};

@@ -1,27 +1,14 @@
 // Level sets that are regions: which of them each voxel belongs to, and where the walls between them run.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "implicit/level_sets/distance_blocks.h"
-#include "implicit/volumes/scalar_field.h"
+#include "implicit/level_sets/level_sets.h"
 #include "isoshell/backend.h"
 #include "isoshell/regions.h"
 
 namespace isoshell {
-
-/// Level sets of one lattice, each under the name that its region gets.
-struct LevelSets {
-  std::vector<std::unique_ptr<ScalarField>> fields;
-  std::vector<std::string> names;
-  std::vector<std::string> warnings;  ///< of what was read
-};
-
-/// Their values, in voxels; frees the fields. Throws: usage for level sets of different transforms, or whose voxels are
-/// no cubes, or whose background says nothing of what lies beyond their band; out_of_memory over the context's limit.
-std::vector<DistanceBlocks> distance_blocks_of(LevelSets sets, const Context& context);
 
 struct LabelsOfLevelSets {
   LabelVolume volume;
@@ -35,8 +22,8 @@ struct LabelsOfLevelSets {
 /// other, as their slopes are nearly opposite, with a gap of at most a voxel: in the ball that has the points of both
 /// nearest to it as ends of a diameter. Walls cross the lines between centres of voxels where the two values are equal,
 /// or the value is 0, and have the slope of their difference as normal. Result: the same for any number of threads.
-/// Cost: linear in the box of all, 4 bytes a voxel. Throws: as distance_blocks_of; nothing_to_mesh where no value is
+/// Cost: linear in the box of all, 4 bytes a voxel. Throws: nothing_to_mesh where no value is
 /// below 0; out_of_memory over the context's limit, and as LevelSetVoxels does; interrupted.
-LabelsOfLevelSets labels_of_level_sets(LevelSets sets, const Context& context);
+LabelsOfLevelSets labels_of_level_sets(const LevelSets& sets, const Context& context);
 
 }  // namespace isoshell

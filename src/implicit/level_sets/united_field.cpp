@@ -58,23 +58,15 @@ class UnitedField : public ScalarField {
 
 }  // namespace
 
-std::unique_ptr<ScalarField> united_level_sets(LevelSets sets, const Context& context) {
-  const ScalarField& first = *sets.fields.front();
-  const double voxel_size_world = cube_edge(first.to_world);
-  const std::string file = first.file, grid_class = first.grid_class;
-  const AffineMap map = first.to_world;
-  double background = first.background;
+std::unique_ptr<ScalarField> united_level_sets(LevelSets sets) {
   std::string name;
-  for (const auto& field : sets.fields) background = std::min(background, field->background);
-  const std::vector<std::string> names = sets.names;
-  for (const std::string& of : names) name += (name.empty() ? "" : ", ") + of;
-  auto united =
-      std::make_unique<UnitedField>(distance_blocks_of(std::move(sets), context), names, file, voxel_size_world);
-  united->file = file;
+  for (const std::string& of : sets.names) name += (name.empty() ? "" : ", ") + of;
+  auto united = std::make_unique<UnitedField>(std::move(sets.blocks), sets.names, sets.file, cube_edge(sets.to_world));
+  united->file = sets.file;
   united->name = name;
-  united->grid_class = grid_class;
-  united->background = background;
-  united->to_world = map;
+  united->grid_class = sets.grid_class;
+  united->background = sets.background;
+  united->to_world = sets.to_world;
   return united;
 }
 
