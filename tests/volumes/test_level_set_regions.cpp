@@ -5,9 +5,9 @@
 #include "isoshell/region_census.h"
 #include "isoshell/remesh.h"
 #include "support/catch.h"
-#include "support/level_sets.h"
 #include "support/refusals.h"
 #include "support/temporary_file.h"
+#include "volumes/level_sets.h"
 
 using namespace isoshell;
 

@@ -4,9 +4,9 @@
 #include "io/level_sets.h"
 #include "isoshell/error.h"
 #include "support/catch.h"
-#include "support/level_sets.h"
 #include "support/refusals.h"
 #include "support/temporary_file.h"
+#include "volumes/level_sets.h"
 
 using namespace isoshell;
 
