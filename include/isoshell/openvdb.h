@@ -13,9 +13,9 @@
 namespace isoshell {
 
 /// A grid to start from, by input_of(): a level set, a fog volume or distances of FloatGrid and DoubleGrid, labels of
-/// Int32Grid and Int64Grid. What is made of it is, bit for bit, what is made of a file of it. Shares the tree, which
-/// must not change meanwhile. Throws: unreadable_input for a transform that is not linear. A grid of another type is
-/// refused by input_of().
+/// Int32Grid and Int64Grid. What is made of it is, bit for bit, what is made of a file that has its values in full, not
+/// as half floats. Shares the tree, which must not change meanwhile. Throws: unreadable_input for a transform that is
+/// not linear. A grid of another type is refused by input_of().
 MemoryGrid read_grid(const openvdb::GridBase& grid);
 
 /// The grid that save_level_set() writes: in world units, from voxel centres, with a sign everywhere. Of a level set on

@@ -97,11 +97,8 @@ def estimate(source: SourceLike, *faces: Any, context: Optional[Context] = None,
         them rather high than low.
     """
     given: dict[str, Any] = dict(options)
-    sizing = sizing_of(given)
-    place, _ = settle(context, given)
-    source = opened(with_faces(source, faces), given)
-    keywords = keywords_for(source, given)
-    return _isoshell.estimate(place, source_of(source, sizing), keywords, listener(given))
+    place, _, start, keywords = begun(source, faces, context, given)
+    return _isoshell.estimate(place, start, keywords, listener(given))
 
 
 def level_set(source: SourceLike, *faces: Any, context: Optional[Context] = None, **options: Unpack[Options]) -> LevelSet:
@@ -121,11 +118,8 @@ def level_set(source: SourceLike, *faces: Any, context: Optional[Context] = None
     refused = [name for name in NOT_OF_LEVEL_SETS if given.get(name)]
     if refused:
         raise Error(f"{', '.join(refused)}: not of a level set; leave it out", stage="options")
-    sizing = sizing_of(given)
-    place, progress = settle(context, given)
-    source = opened(with_faces(source, faces), given)
-    keywords = keywords_for(source, given)
-    return LevelSet(_isoshell.level_set(place, source_of(source, sizing), keywords, progress, listener(given)))
+    place, progress, start, keywords = begun(source, faces, context, given)
+    return LevelSet(_isoshell.level_set(place, start, keywords, progress, listener(given)))
 
 
 def takes_true(options: dict[str, Any], name: str) -> bool:
@@ -173,6 +167,17 @@ def check_target(target: str, options: dict[str, Any], volumes: list[str], sourc
     from ._usd import _write
 
     _write.check_target(target, options.get("force") is True, volumes, others, inputs)
+
+
+def begun(source: SourceLike, faces: tuple[Any, ...], context: Optional[Context],
+          given: dict[str, Any]) -> tuple[Any, Any, _isoshell.Source, Keywords]:
+    """The place of a run without files, its progress, what it starts from and its keywords; takes what is no keyword
+    out of what was given."""
+    sizing = sizing_of(given)
+    place, progress = settle(context, given)
+    source = opened(with_faces(source, faces), given)
+    keywords = keywords_for(source, given)
+    return place, progress, source_of(source, sizing), keywords
 
 
 def settle(context: Optional[Context], options: dict[str, Any]) -> tuple[Any, Any]:

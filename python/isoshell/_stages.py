@@ -9,9 +9,9 @@ from . import _isoshell
 from ._context import Context
 from ._errors import Error
 from ._paths import path_text
-from ._remesh import keywords_for, listener, settle
+from ._remesh import begun, listener
 from ._result import Result
-from ._sources import SourceLike, opened, sizing_of, source_of, with_faces
+from ._sources import SourceLike
 
 if TYPE_CHECKING:
     import numpy as np
@@ -41,11 +41,8 @@ class Stages:
         refused = [name for name in OF_WHOLE_RUNS if given.get(name)]
         if refused:
             raise Error(f"{', '.join(refused)}: only remesh() takes that", stage="options")
-        sizing = sizing_of(given)
-        place, progress = settle(context, given)
-        source = opened(with_faces(source, faces), given)
-        self._run = _isoshell.StageRun(place, source_of(source, sizing), keywords_for(source, given),
-                                      progress, listener(given))
+        place, progress, start, keywords = begun(source, faces, context, given)
+        self._run = _isoshell.StageRun(place, start, keywords, progress, listener(given))
         self._result: Optional[Result] = None
 
     def prepare(self) -> Stages:

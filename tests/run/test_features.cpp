@@ -200,13 +200,13 @@ TEST_CASE("features: more places on curves than vertices are no error", "[featur
 
 namespace {
 
-/// With 25 cells of a unit on it: 140 of length around the plate and 25 x 12 on it.
-TriangleSoup plate_with_cells() {
+/// With 25 cells of a unit on its first 11 x 11: 12 of length on each.
+TriangleSoup plate_with_cells(int width) {
   std::set<std::array<int, 3>> plate;
-  for (int x = 0; x < 11; ++x)
-    for (int y = 0; y < 11; ++y) {
+  for (int x = 0; x < width; ++x)
+    for (int y = 0; y < width; ++y) {
       plate.insert({x, y, 0});
-      if (x % 2 == 1 && y % 2 == 1) plate.insert({x, y, 1});
+      if (x < 11 && y < 11 && x % 2 == 1 && y % 2 == 1) plate.insert({x, y, 1});
     }
   return known_curves::cells(plate, 2);
 }
@@ -216,21 +216,28 @@ TriangleSoup plate_with_cells() {
 TEST_CASE("features: where curves have more vertices than lengths ask for, faces far from them have their share",
           "[features]") {
   TestContext context;
-  const RemeshResult result = remesh(plate_with_cells(), keeping_creases(420), context);
-  check_valid(result, 420, 0);
+  const RemeshResult result = remesh(plate_with_cells(21), keeping_creases(360), context);
+  check_valid(result, 360, 0);
   const FeatureReport& features = result.report.features;
   CHECK(features.kept_length_world == Approx(features.length_world));
   CHECK(features.vertices > 250);  // of these 208 are corners
-  double below = 0;
+  int below = 0;
   for (const WorldPoint& p : result.mesh.vertices)
-    if (p.z < 1e-3 && p.x > .1 && p.y > .1 && p.x < 10.9 && p.y < 10.9) ++below;
-  CHECK(below > 50);  // edges of 1.25 would make it 70
+    if (p.z < 1e-3 && p.x > .1 && p.y > .1 && p.x < 20.9 && p.y < 20.9) ++below;
+  CHECK(below > 45);  // 32 where lengths are as if there were no curves
+}
+
+TEST_CASE("features: edges are longer before creases are left out", "[features]") {
+  TestContext context;
+  const RemeshResult result = remesh(plate_with_cells(11), keeping_creases(260), context);
+  check_valid(result, 260, 0);
+  CHECK(result.report.features.kept_length_world == Approx(result.report.features.length_world));
 }
 
 TEST_CASE("features: where vertices are too few for all creases the longest are kept, and the others named",
           "[features]") {
   TestContext context;
-  const RemeshResult result = remesh(plate_with_cells(), keeping_creases(200), context);
+  const RemeshResult result = remesh(plate_with_cells(11), keeping_creases(200), context);
   const FeatureReport& features = result.report.features;
   CHECK(check_mesh(result.mesh).is_closed_manifold());
   CHECK(result.mesh.vertices.size() == 200);

@@ -13,7 +13,7 @@
 
 namespace isoshell {
 
-class HeldGrid;  // of the library, in src/io/vdb
+class HeldGrid;  // of the library
 
 /// A grid that a run can start from. Copies share it.
 class MemoryGrid {
@@ -40,9 +40,9 @@ struct SparseVolume {
 
 /// A copy of the values as a grid. `name` is what messages call the volume. Cost: a sort of the voxels, and 2 KiB for
 /// each block of 8^3 that has one. Throws: usage for no voxel, another number of values than of voxels, a voxel that is
-/// given twice or farther than 2^30 from the origin, an infinite value, a background that is not finite, and steps that
-/// span no volume; out_of_memory where the grid would take more than the limit in bytes (0: none); unreadable_input in
-/// a build without OpenVDB.
+/// given twice or 2^30 or farther from the origin, an infinite value, a background that is not finite, of a level set
+/// one that is not above 0 or no value that is 0 or above, and steps that span no volume; out_of_memory where the grid
+/// would take more than the limit in bytes (0: none); unreadable_input in a build without OpenVDB.
 MemoryGrid sparse_grid(const SparseVolume& volume, const std::string& name, int64_t memory_limit_bytes = 0);
 
 /// A grid of NanoVDB in its bytes, which start at a multiple of 32 in host memory and outlive all copies of the result.
