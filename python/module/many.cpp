@@ -8,6 +8,7 @@
 #include <future>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "isoshell/advanced/workers.h"
 #include "module/watched.h"
@@ -22,15 +23,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A run that was begun. It keeps what the run reads until that has ended.
+/// What runs read that nobody waits for any more, until their workers have ended.
+using LeftBehind = std::vector<nb::object>;
+
+/// A run that was begun. It keeps what the run reads, or leaves it behind where that has not ended: to wait for it
+/// could take as long as a run takes, as nothing has cancelled it yet.
 class BegunRun {
  public:
-  BegunRun(RequestFromPython requested, nb::object kept) : requested_(std::move(requested)), kept_(std::move(kept)) {}
+  BegunRun(RequestFromPython requested, nb::object kept, std::shared_ptr<LeftBehind> left)
+      : requested_(std::move(requested)), kept_(std::move(kept)), left_(std::move(left)) {}
   BegunRun(BegunRun&&) = default;
   ~BegunRun() {
-    if (has_ended()) return;
-    const nb::gil_scoped_release released;
-    result_.wait();
+    if (!has_ended()) left_->push_back(std::move(kept_));
   }
 
   void begin(Workers& workers, ReadMemory read, bool measure_all) {
@@ -67,6 +71,7 @@ class BegunRun {
  private:
   RequestFromPython requested_;
   nb::object kept_;
+  std::shared_ptr<LeftBehind> left_;
   std::shared_ptr<std::vector<Mail::Message>> messages_ = std::make_shared<std::vector<Mail::Message>>();
   std::future<RunResult> result_;
 };
@@ -85,7 +90,7 @@ class RunWorkers {
   ~RunWorkers() { close(); }
 
   BegunRun begin(const Source& source, const Keywords& keywords, bool measure_all, nb::object tell) {
-    BegunRun run(request_from_python(source, keywords, "", nb::none(), std::move(tell)), source.kept);
+    BegunRun run(request_from_python(source, keywords, "", nb::none(), std::move(tell)), source.kept, left_);
     run.begin(*workers_, source.read, measure_all);
     return run;
   }
@@ -93,11 +98,15 @@ class RunWorkers {
   int count() const { return workers_->count(); }
 
   void close() {
-    const nb::gil_scoped_release released;
-    workers_.reset();
+    {
+      const nb::gil_scoped_release released;
+      workers_.reset();
+    }
+    left_->clear();
   }
 
  private:
+  std::shared_ptr<LeftBehind> left_ = std::make_shared<LeftBehind>();
   std::unique_ptr<Workers> workers_;  ///< null when they are closed
 };
 
