@@ -19,10 +19,9 @@
 namespace isoshell {
 namespace {
 
-constexpr double kFacingReach = 0.9;    ///< of curves that see one another, in edge lengths
-constexpr double kFirstCut = 1.5;       ///< lengths of the mesh on which they are found, over the one that is asked for
-constexpr double kCosineOfTurn = 0.94;  ///< of 20 degrees
-constexpr int kMostCuts = 3;            ///< until the fine mesh shows the lengths that are asked for
+constexpr double kFacingReach = 0.9;  ///< of curves that see one another, in edge lengths
+constexpr double kFirstCut = 1.5;     ///< lengths of the mesh on which they are found, over the one that is asked for
+constexpr int kMostCuts = 3;          ///< until the fine mesh shows the lengths that are asked for
 
 /// As snap_coordinate, before it rounds.
 WorldPoint on_lattice(const LatticeFrame& frame, const WorldPoint& p) {
@@ -47,18 +46,17 @@ VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const 
   }
 }
 
-/// Edges at which the surface turns, or ends, or parts: keys, ascending.
+/// Edges that flips leave alone: those at which the surface turns, or ends, or parts. Keys, ascending.
 std::vector<uint64_t> turning_edges(const FineMesh& mesh) {
-  const auto normal = [&](uint32_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    return cross(mesh.position[b] - mesh.position[a], mesh.position[c] - mesh.position[a]);
-  };
+  const auto at = [&](uint32_t h) { return mesh.position[mesh.triangles[h / 3][h % 3]]; };
   std::vector<uint64_t> edges;
   for_each_edge(find_edge_sides(mesh.triangles, mesh.position.size()),
                 [&](uint32_t u, uint32_t v, View<const EdgeSide> on_edge) {
                   if (on_edge.size == 2) {
-                    const WorldPoint m = normal(on_edge[0].half_edge / 3), n = normal(on_edge[1].half_edge / 3);
-                    if (dot(m, n) > kCosineOfTurn * length(m) * length(n)) return;
+                    const uint32_t h = on_edge[0].half_edge, twin = on_edge[1].half_edge;
+                    const uint32_t next = next_in_triangle(h), opposite = next_in_triangle(next);
+                    if (are_in_plane(at(h), at(next), at(opposite), at(next_in_triangle(next_in_triangle(twin)))))
+                      return;
                   }
                   edges.push_back(edge_key(u, v));
                 });

@@ -99,13 +99,8 @@ class FlatEdges : private TwinTriangles {
     const double area_c = length(at_c), area_d = length(at_d);
     const double left = dot(a - c, b - c) * area_d, right = dot(a - d, b - d) * area_c;
     if (left + right >= -kRoundedAway * (std::abs(left) + std::abs(right))) return false;
+    if (!are_in_plane(a, b, c, d)) return false;
     const WorldPoint both = at_c + at_d;
-    if (std::abs(dot(at_c, d - a)) > kMostOffPlaneQ8 * length(both)) return false;
-    const double ab = length(b - a);
-    const auto faces_so = [&](const WorldPoint& n, double area) {
-      return dot(n, both) > 0 || area <= kMostOffPlaneQ8 * ab;
-    };
-    if (!faces_so(at_c, area_c) || !faces_so(at_d, area_d)) return false;
     if (dot(cross(d - a, c - a), both) <= 0 || dot(cross(c - b, d - b), both) <= 0) return false;
     const double longest_sq =
         std::max({length_sq(b - a), length_sq(c - a), length_sq(c - b), length_sq(d - a), length_sq(d - b)});
@@ -148,6 +143,15 @@ std::vector<uint64_t> crowded_of(const EdgeSides& before, const FineMesh& mesh, 
 }
 
 }  // namespace
+
+bool are_in_plane(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c, const WorldPoint& d) {
+  const WorldPoint ab = b - a, at_c = cross(ab, c - a), at_d = cross(d - a, ab), both = at_c + at_d;
+  if (std::abs(dot(at_c, d - a)) > kMostOffPlaneQ8 * length(both)) return false;
+  const auto faces_so = [&](const WorldPoint& n) {
+    return dot(n, both) > 0 || length(n) <= kMostOffPlaneQ8 * length(ab);
+  };
+  return faces_so(at_c) && faces_so(at_d);
+}
 
 FineMesh flip_flat_edges(FineMesh mesh, MeshTwins* twins) {
   const MeshTriangles before = mesh.triangles;

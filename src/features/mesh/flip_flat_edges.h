@@ -5,6 +5,9 @@
 
 namespace isoshell {
 
+/// Whether triangles a, b, c and b, a, d are in a plane, to half a step of the lattice, and face the same way.
+bool are_in_plane(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c, const WorldPoint& d);
+
 /// Flips edges between two triangles in a plane until the mesh is Delaunay there: parts have long thin triangles in
 /// their flat faces, whose vertices are no neighbours of those that are near to them, and cells of seeds would come in
 /// pieces. The surface stays as it is to half a step of the lattice, edges of paths stay, no edge becomes longer than
