@@ -8,7 +8,8 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kFewestVerticesPerPart = 24;
-constexpr double kLeastCellVox = 0.25;  ///< area of a cell of a surface that is no needle
+constexpr int64_t kFewestVerticesPerHandle = 12;  ///< two rings of six; the least torus has seven
+constexpr double kLeastCellVox = 0.25;            ///< area of a cell of a surface that is no needle
 
 int64_t vertices_for_parts(const InputTopology& input) {
   return kFewestVerticesPerPart * (input.components + std::max<int64_t>(0, input.genus));
@@ -58,6 +59,10 @@ bool shows_all_parts(int64_t vertices, const InputTopology& input) { return vert
 bool shows_most_handles(int64_t vertices, const InputTopology& input) {
   if (!input.closed || !input.oriented || shows_all_parts(vertices, input)) return true;
   return vertices >= 2 * kFewestVerticesPerPart * input.genus;
+}
+
+bool has_room_for_parts(int64_t vertices, const InputTopology& input) {
+  return vertices >= kFewestVerticesPerHandle * (input.components + std::max<int64_t>(0, input.genus));
 }
 
 bool is_needle(const PreparedSurface& p) {

@@ -13,6 +13,9 @@ bool shows_all_parts(int64_t vertices, const InputTopology& input);
 /// False for smoke and foam: walls and gaps are as narrow as handles are many, and would cross.
 bool shows_most_handles(int64_t vertices, const InputTopology& input);
 
+/// Whether a mesh of so many vertices has room for each component and handle, in triangles of whatever shape.
+bool has_room_for_parts(int64_t vertices, const InputTopology& input);
+
 /// Whether a surface has so little area that cells of the result would be far narrower than voxels: it is thinner than
 /// a voxel all over.
 bool is_needle(const PreparedSurface& prepared);

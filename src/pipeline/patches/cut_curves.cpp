@@ -13,6 +13,7 @@
 #include "geometry/world_vector.h"
 #include "isoshell/mesh_topology.h"
 #include "pipeline/grid/attempt.h"
+#include "pipeline/grid/shown_parts.h"
 #include "pipeline/grid/sizing.h"
 #include "pipeline/patches/feature_report.h"
 #include "pipeline/patches/lay_on_sheet.h"
@@ -52,8 +53,9 @@ std::string obstacle(const PreparedSurface& p, const FeatureMesh& mesh, const Cu
   if (!input.closed || !input.oriented || inside < int64_t(network.curves.size()))
     return "the surface has holes, edges of more than two faces, or faces that disagree about the outside";
   if (six_volumes(mesh) < 0) return "the faces look inwards";
-  if (p.grown) return "walls without thickness had to be grown";
-  if (p.closing_vox > 0) return "gaps were closed";
+  if (p.grown.only_flaps) return "walls without thickness had to be grown";
+  if (p.grown && !has_room_for_parts(p.target_of_input.vertices, input)) return "walls had to be grown";
+  if (p.options.closing_vox.value_or(0) > 0 || p.options.closing_world.value_or(0) > 0) return "gaps were closed";
   if (p.own_faces_meet) return "faces are so narrow that they meet once they are rounded";
   return "";
 }
@@ -73,9 +75,9 @@ SeparatedMesh separated(const FeatureMesh& mesh, const CurveNetwork& network) {
           has_borders ? check_mesh(apart).boundary_loops : 0};
 }
 
-/// The borders of the sheet are no part of a surface that is open.
+/// The borders of the sheet are no part of a surface that is open, nor what was grown of one that is not.
 int64_t vertices_of(const PreparedSurface& p, bool is_open) {
-  return is_open && !p.vertices_of_lengths ? p.target_of_input.vertices : p.target.vertices;
+  return (is_open || p.grown) && !p.vertices_of_lengths ? p.target_of_input.vertices : p.target.vertices;
 }
 
 /// An estimate with the fine surface, which has about 21 vertices a seed. Throws: NoRoom where that is above the limit.
@@ -297,18 +299,6 @@ bool may_keep_borders(const PreparedSurface& p) {
   return p.options.boundary == Boundary::keep && !p.surface.topology.closed;
 }
 
-CutAlongCurves cut_sheet_instead(const CutSource& failed, const std::string& why, const PreparedSurface& p,
-                                 const FeatureReport& found, Run& run) {
-  CutAlongCurves cut;
-  if (!failed.input) return cut;
-  const CutInput& input = *failed.input;
-  failure_reason([&] {
-    cut = cut_sheet(input.mesh, input.network, input.edge_length_world, why, nullptr, p, found, run);
-    return std::string();
-  });
-  return cut;
-}
-
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
                PreparedSurface& p, Run& run) {
   Context& context = run.context;
@@ -334,7 +324,6 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
       const SeparatedMesh apart = separated(mesh, network);
       found.border_loops = apart.border_loops;
       CutSource source{all, all, {}};
-      if (!is_open) source.input = std::make_shared<CutInput>(CutInput{mesh, network, curves.edge_length_world});
       cut = cut_network(mesh, network, curves, *known, source, vertices_of(p, is_open) - apart.more_places,
                         p.previous.get(), p, found, run);
     }

@@ -13,20 +13,12 @@
 
 namespace isoshell {
 
-/// What a surface was cut from.
-struct CutInput {
-  FeatureMesh mesh;
-  CurveNetwork network;
-  double edge_length_world;  ///< of CurveOptions
-};
-
 /// Along which curves a surface was cut.
 struct CutSource {
   std::vector<LostCurve> if_lost;   ///< all curves of the mesh, as a report says them
   std::vector<LostCurve> found;     ///< those that it was cut along
   std::vector<LostCurve> left_out;  ///< those that it was not
   bool is_sheet = false;            ///< the curves were laid onto the sheet: the input's own triangles cannot be it
-  std::shared_ptr<const CutInput> input = nullptr;  ///< of a closed surface that is no sheet
 };
 
 using SharedCut = std::shared_ptr<const CutSurface>;
@@ -44,10 +36,5 @@ bool may_keep_borders(const PreparedSurface& p);
 /// curves that could not be kept, as p.report says. `known` are the mesh's creases, where those were found.
 bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optional<FoundCreases> known,
                PreparedSurface& p, Run& run);
-
-/// The sheet, cut along the curves of an input whose own triangles gave no mesh, for this reason, with what was `found`
-/// on the way there. No surface where that cannot be.
-CutAlongCurves cut_sheet_instead(const CutSource& failed, const std::string& why, const PreparedSurface& p,
-                                 const FeatureReport& found, Run& run);
 
 }  // namespace isoshell

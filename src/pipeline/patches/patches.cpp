@@ -150,44 +150,18 @@ void keep_lost_seams(std::vector<LostCurve>& lost, size_t first) {
 
 /// The mesh of patches, or why there is none.
 struct MeshOfPatches : MeshedPatches {
-  CutAlongCurves cut;  ///< that it is on
   TriangleMesh mesh;
 };
 
-MeshOfPatches mesh_of_patches(const PreparedSurface& p, CutAlongCurves cut, SeededMesh& made,
+MeshOfPatches mesh_of_patches(const PreparedSurface& p, int64_t border_loops, SeededMesh& made,
                               const PatchOptions& options, Run& run) {
-  MeshOfPatches out{join_patches(p, *cut.surface, made, options, run), std::move(cut), {}};
+  MeshOfPatches out{join_patches(p, *p.cut, made, options, run), {}};
   if (!out.why_not.empty()) return out;
   out.mesh = to_world(out.joined.mesh, p.surface.frame);
   out.mesh.features = std::move(out.joined.features);
   part_fans(out.mesh, p.surface.frame.voxel_size / kOneVoxelQ8);
-  if (!check_mesh(out.mesh).is_manifold_with(out.cut.features.border_loops))
-    out.why_not = "parts that touch would make no manifold";
+  if (!check_mesh(out.mesh).is_manifold_with(border_loops)) out.why_not = "parts that touch would make no manifold";
   return out;
-}
-
-RelaxReport relax_anew(const CutSurface& cut, const PatchOptions& in_patches, SeededMesh& made, Run& run) {
-  RelaxedSeeds relaxed = run.timed("relax", [&] { return relax_in_patches(cut, in_patches, run.context); });
-  made = {{}, std::move(relaxed.seeds)};
-  return std::move(relaxed.report);
-}
-
-/// From the curves on the sheet, which has no bad place, and from new seeds.
-MeshOfPatches mesh_on_sheet_instead(MeshOfPatches failed, const PreparedSurface& p, PatchOptions in_patches,
-                                    SeededMesh& made, RemeshReport& report, Run& run) {
-  CutAlongCurves cut = run.timed("features", [&] {
-    return cut_sheet_instead(*failed.cut.surface->source, failed.why_not, p, failed.cut.features, run);
-  });
-  if (!cut.surface) return failed;
-  failed.cut = std::move(cut);
-  in_patches.seeds.count = failed.cut.surface->seeds;
-  failed.why_not = failure_reason([&] {
-    report.relax = relax_anew(*failed.cut.surface, in_patches, made, run);
-    return std::string();
-  });
-  if (!failed.why_not.empty()) return failed;
-  report.seeds = made.seeds.size();
-  return mesh_of_patches(p, std::move(failed.cut), made, in_patches, run);
 }
 
 /// Of the mesh as it is: widening angles may have ended some that its patches had. Result: where the first is.
@@ -211,7 +185,7 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, Run& run) {
   const RemeshOptions& options = p.options;
   if (options.method != Method::sheet) return;
   Context& context = run.context;
-  const double edge_world = p.target.edge_length_world;
+  const double edge_world = (p.grown ? p.target_of_input : p.target).edge_length_world;
   const Seams seams = seams_of(source.soup, options, edge_world, run);
   const std::shared_ptr<const Polylines>& lines = options.features.lines;
   if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines && !may_keep_borders(p))
@@ -256,21 +230,21 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, Run& run) {
 
 std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetWhenNeeded& sheet, SeededMesh& made,
                                                 PatchOptions in_patches, RemeshReport& report, Run& run) {
-  MeshOfPatches made_here = mesh_of_patches(p, {p.cut, report.features}, made, in_patches, run);
+  FeatureReport& features = report.features;
+  MeshOfPatches made_here = mesh_of_patches(p, features.border_loops, made, in_patches, run);
   if (!made_here.why_not.empty() && std::exchange(in_patches.previous, nullptr)) {
     report.coherence.began_warm = false;
     report.coherence.why_cold = made_here.why_not;
-    report.relax = relax_anew(*p.cut, in_patches, made, run);
-    made_here = mesh_of_patches(p, std::move(made_here.cut), made, in_patches, run);
+    RelaxedSeeds relaxed = run.timed("relax", [&] { return relax_in_patches(*p.cut, in_patches, run.context); });
+    made = {{}, std::move(relaxed.seeds)};
+    report.relax = std::move(relaxed.report);
+    made_here = mesh_of_patches(p, features.border_loops, made, in_patches, run);
   }
-  if (!made_here.why_not.empty())
-    made_here = mesh_on_sheet_instead(std::move(made_here), sheet.get(), in_patches, made, report, run);
-  FeatureReport& features = report.features = std::move(made_here.cut.features);
   if (!made_here.why_not.empty()) {
     give_up(p.cut->source->if_lost, made_here.why_not, features, run);
     return {};
   }
-  const CutSurface& cut = *made_here.cut.surface;
+  const CutSurface& cut = *p.cut;
   TriangleMesh& mesh = made_here.mesh;
   if (made_here.optimize.self_intersections > 0)
     report.intersection_at = tell_intersections(p.surface.frame, made_here, run);
