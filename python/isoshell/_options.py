@@ -75,6 +75,9 @@ class Options(TypedDict, total=False):
         save_voronoi: also write the Voronoi volume, to resume from.
         save_level_set: also write signed distances around the closed surface, on the grid of resolution or voxel_size.
         level_set_band: how far, in voxels, a level set reaches on both sides [3].
+        level_set_of: what a level set has the distances to: the surface of INPUT, with its holes closed, or the
+            resulting mesh [input].
+        level_set_half: write level sets with values of 16 bits, of half the size.
         split_regions: also write each region of the result as a closed mesh of its own, DIR/NAME or DIR/LABEL, in the
             format of OUTPUT.
         recenter: write meshes with this place at the origin, auto: round numbers near the middle of the result; for
@@ -144,6 +147,8 @@ class Options(TypedDict, total=False):
     save_voronoi: Optional[Path]
     save_level_set: Optional[Union[bool, Path]]
     level_set_band: Optional[float]
+    level_set_of: Optional[Literal["input", "result"]]
+    level_set_half: bool
     split_regions: Optional[Path]
     recenter: Optional[Union[str, Sequence[float]]]
     stop_after: Optional[Literal["shell", "voronoi", "level-set"]]

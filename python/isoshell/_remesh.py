@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ._options import Options
 
 STAGE_FILES = ("save_shell", "save_voronoi", "save_level_set")
-NOT_OF_LEVEL_SETS = ("save_shell", "save_voronoi", "save_level_set", "split_regions", "stop_after", "stats", "report", "grids",
+NOT_OF_LEVEL_SETS = ("save_shell", "save_voronoi", "save_level_set", "level_set_of", "level_set_half", "split_regions", "stop_after", "stats", "report", "grids",
                      "require", "output_format", "recenter", "color_features")
 OF_OTHER_OUTPUTS = ("output_format", "stop_after", "color_features")
 

@@ -153,7 +153,8 @@ class Result:
     def level_set(self) -> Optional[LevelSet]:
         """Signed distances around the closed surface, after remesh(..., save_level_set=True); otherwise None.
 
-        They are those of the source, which isoshell.level_set() makes without a mesh. A result that is pickled loses it.
+        They are those of the source, which isoshell.level_set() makes without a mesh, or with level_set_of="result" of
+        the result. A result that is pickled loses it.
         """
         if self._level_set is None and self._made.level_set is not None:
             self._level_set = LevelSet(self._made.level_set)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ._options import Options
 
-OF_WHOLE_RUNS = ("save_shell", "save_voronoi", "save_level_set", "level_set_band", "split_regions", "stop_after", "stats", "report", "force",
+OF_WHOLE_RUNS = ("save_shell", "save_voronoi", "save_level_set", "level_set_band", "level_set_of", "level_set_half", "split_regions", "stop_after", "stats", "report", "force",
                  "require", "allow_intersections", "output_format", "color_features")
 
 

@@ -21,7 +21,7 @@ MadeResult remesh(Place& place, const Source& source, const Keywords& keywords, 
                   bool measure_all, bool keep_level_set, nb::object progress, nb::object tell) {
   RequestFromPython requested = request_from_python(source, keywords, output, std::move(progress), std::move(tell));
   if (measure_all) requested.arguments.run.measures = Measures::all;
-  requested.arguments.run.keep_level_set = keep_level_set;
+  requested.arguments.run.level_set.keep = keep_level_set;
   return watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
     return made_of(run_from(read, request, context));
   });
@@ -31,7 +31,7 @@ MadeLevelSet level_set(Place& place, const Source& source, const Keywords& keywo
                        nb::object tell) {
   RequestFromPython requested = request_from_python(source, keywords, "", std::move(progress), std::move(tell));
   requested.arguments.run.stop_after = StopAfter::level_set;
-  requested.arguments.run.keep_level_set = true;
+  requested.arguments.run.level_set.keep = true;
   return watched(place, source, requested, [read = source.read](const RunRequest& request, Context& context) {
     return MadeLevelSet{run_from(read, request, context).level_set};
   });

@@ -60,6 +60,23 @@ def test_a_run_that_is_asked_to_keeps_its_level_set(ball, distances):
     assert isoshell.remesh(ball, **SMALL).level_set is None
 
 
+def test_the_level_set_of_the_result_is_around_its_triangles(ball, distances, tmp_path):
+    result = isoshell.remesh(ball, vertices=60, resolution=40, save_level_set=True, level_set_of="result")
+    of_result = result.level_set
+    assert of_result.voxel_size == distances.voxel_size
+    inscribed = np.linalg.norm(result.vertices[result.faces].mean(axis=1), axis=1)  # middles of faces are nearest
+    near = np.abs(of_result.values) < 0.01
+    from_middle = np.linalg.norm(moved_by(of_result)[near], axis=1)
+    assert from_middle.min() > inscribed.min() - 0.03 and from_middle.max() < 1.15
+    for half, name in ((False, "single.vdb"), (True, "half.vdb")):
+        isoshell.remesh(ball, save_level_set=tmp_path / name, level_set_of="result", level_set_half=half, **SMALL)
+    assert (tmp_path / "half.vdb").stat().st_size < 0.75 * (tmp_path / "single.vdb").stat().st_size
+    with pytest.raises(isoshell.Error, match="leave out stop_after"):
+        isoshell.remesh(ball, stop_after="level-set", output=tmp_path / "none.vdb", level_set_of="result")
+    with pytest.raises(isoshell.Error, match="level_set_of: not of a level set"):
+        isoshell.level_set(ball, level_set_of="result")
+
+
 def test_as_an_array_it_has_a_sign_everywhere(distances):
     dense = distances.to_array()
     low = distances.coordinates.min(axis=0)

@@ -110,7 +110,9 @@ uint64_t digest_of_options(const RunRequest& request, const Input& input, FileDi
   const std::string& sizing = options.sizing;
   if (!sizing.empty()) text += " sizing " + sizing.substr(file_of_sizing(sizing).size());
   for (const std::string& name : request.input.grids) text += " grid " + grid_name_of(name).grid;
-  if (!request.save_level_set.empty()) text += " level set " + std::to_string(request.level_set_band_vox);
+  if (!request.level_set.path.empty())
+    text += " level set " + std::to_string(request.level_set.band_vox) + (request.level_set.as_half ? " halves" : "") +
+            (request.level_set.of == LevelSetOf::result ? " of result" : "");
   const std::vector<WorldPoint> offset = {request.output.recenter.offset()};
   uint64_t sum = digest_of({digest_of(text), uint64_t(request.stop_after), digest_of(offset)});
   for (const NamedFile& file : inputs_of(request))

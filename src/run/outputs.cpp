@@ -23,6 +23,7 @@
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/options/option_text.h"
 #include "isoshell/region_census.h"
+#include "run/stage_files.h"
 
 namespace isoshell {
 namespace {
@@ -150,7 +151,7 @@ std::vector<NamedFile> outputs_of(const RunRequest& r) {
   const char* const replaced = r.report.empty() ? kInput : "";  // a report reads it again
   std::vector<NamedFile> files = {
       {"OUTPUT", r.output.path, replaced}, {"--stats", r.statistics},          {"--report", r.report},
-      {"--save-shell", r.save_shell},      {"--save-voronoi", r.save_voronoi}, {"--save-level-set", r.save_level_set}};
+      {"--save-shell", r.save_shell},      {"--save-voronoi", r.save_voronoi}, {"--save-level-set", r.level_set.path}};
   files.push_back({"the preview", preview_path(r.save_voronoi)});
   if (r.stop_after == StopAfter::voronoi) files.push_back({"the preview", preview_path(r.output.path)});
   return files;
@@ -188,9 +189,7 @@ void check_request(const RunRequest& r) {
   possible_features(r.options.values, r);
   if (!r.save_voronoi.empty() && (r.stop_after == StopAfter::shell || r.stop_after == StopAfter::level_set))
     refuse_use("--save-voronoi needs seeds, which come after --stop-after; leave one of them out");
-  if ((r.keep_level_set || !r.save_level_set.empty() || r.stop_after == StopAfter::level_set) &&
-      !r.options.values.regions.empty())
-    refuse_use("a level set is of one solid; leave out --regions, or the level set");
+  check_level_set(r);
   check_one_to_pipe(outputs_of(r));
   const OutputRequest output = named_output(r.output.path, r.output.format, r.stop_after);  // may refuse it
   if (r.options.values.color_features && r.stop_after == StopAfter::mesh && !output.path.empty() &&
@@ -202,7 +201,7 @@ void check_request(const RunRequest& r) {
 
 void check_outputs(const RunRequest& r) {
   if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty() ||
-                           !r.save_level_set.empty()))
+                           !r.level_set.path.empty()))
     refuse(
         "this build writes no .vdb files: leave out --stop-after, --save-shell, --save-voronoi and --save-level-set, "
         "or "

@@ -137,7 +137,7 @@ std::vector<int64_t> frame_numbers(const FrameRange& frames) {
 RunRequest request_of_frame(const SequenceRequest& request, int64_t frame) {
   RunRequest one = request.frame;
   for (std::string* path :
-       {&one.input.path, &one.output.path, &one.save_shell, &one.save_voronoi, &one.save_level_set, &one.statistics})
+       {&one.input.path, &one.output.path, &one.save_shell, &one.save_voronoi, &one.level_set.path, &one.statistics})
     if (!path->empty() && *path != "-") *path = path_of_frame(*path, frame);
   for (std::string& name : one.input.grids) name = grid_of_frame(name, frame);
   one.overwrite |= request.resume;  // what is there and does not fit, and what a frame that was not ended has left

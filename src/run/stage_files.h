@@ -1,4 +1,4 @@
-// What a run writes into stage files beside its products, and takes from them again.
+// What a run writes into .vdb files, and takes from stage files again: products, and level sets of its input or result.
 #pragma once
 
 #include <optional>
@@ -22,6 +22,23 @@ std::vector<std::string> stage_files(const RunRequest& request, const std::strin
 std::vector<std::string> level_set_files(const RunRequest& request);
 /// Whether a run makes a level set.
 bool makes_level_set(const RunRequest& request);
+/// Whether it makes one of this.
+bool makes_level_set_of(const RunRequest& request, LevelSetOf of);
+
+/// Throws: usage where a level set is asked for that the other options leave no solid, or no mesh, for.
+void check_level_set(const RunRequest& request);
+/// Throws: usage where a level set is asked for, of an input that parts regions.
+void refuse_level_set_of_regions(const RunRequest& request);
+
+/// What the request asks for: level_set() of the prepared surface; or the same of the solid that the mesh bounds, exact
+/// to its triangles. On the host. Throws: as level_set() and prepare(); usage for a mesh that is not closed.
+LevelSet level_set_of_run(const LevelSetRequest& request, const Prepared& prepared, const TriangleMesh& mesh,
+                          Context& context);
+
+LevelSetWriteOptions level_set_write_options(const RunRequest& request);
+
+/// Throws: usage where seeds are in patches, which a Voronoi stage file does not hold.
+void refuse_seeds_of_patches(const Prepared& prepared);
 
 StageWriteOptions stage_write_options(const Prepared& prepared, const std::string& options_json,
                                       const std::string& left_out, bool overwrite);

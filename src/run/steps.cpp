@@ -47,7 +47,7 @@ class RunSteps::Run {
     record_.output.format = named_output(request_.output.path, request_.output.format, request_.stop_after).format;
     options_.values.want_shell |= !request_.save_shell.empty() || !request_.save_voronoi.empty() ||
                                   request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::voronoi;
-    if (makes_level_set(request_)) options_.values.level_set_band_vox = request_.level_set_band_vox;
+    if (makes_level_set(request_)) options_.values.level_set_band_vox = request_.level_set.band_vox;
     options_.values.want_digests |= measures_all(request_);
   }
 
@@ -112,6 +112,7 @@ class RunSteps::Run {
     find_surface();
     progress_.expect(surface(), options_.values, *context_);
     const bool has_regions = !surface().regions.empty();  // then distances are from these walls
+    if (has_regions) refuse_level_set_of_regions(request_);
     region_files_ = checked_region_files(request_, surface().regions);
     left_out_ = left_out_of_stage_files(*input_, options_.values.attributes);
     if (input_->stage && !left_out_.empty())
@@ -154,7 +155,7 @@ class RunSteps::Run {
     prepare();
     for (const std::string& path : stage_files(request_, request_.save_shell, StopAfter::shell))
       save_shell(path, request_.overwrite);
-    if (makes_level_set(request_)) make_level_set();
+    make_level_set(LevelSetOf::input, {});
     if (request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::level_set) return result({});
     relax();
     const std::vector<std::string> voronoi = stage_files(request_, request_.save_voronoi, StopAfter::voronoi);
@@ -183,6 +184,7 @@ class RunSteps::Run {
     for (const RegionFile& file : files_of_kept(region_files_, mesh, [&](const std::string& text) { warn(text); }))
       write_step("write", file.path, [&] { write_region(file, mesh, request_.overwrite, record_); });
     for (const std::string& text : warnings_of_files(record_.files, offset_to_origin(mesh))) warn(text);
+    make_level_set(LevelSetOf::result, mesh);
     return result(std::move(mesh));
   }
 
@@ -193,23 +195,21 @@ class RunSteps::Run {
                [&] { isoshell::save_shell(path, p.surface(), p.samples(), p.shell(), stage_options(overwrite)); });
   }
 
-  void make_level_set() {
+  void make_level_set(LevelSetOf of, const TriangleMesh& mesh) {
+    if (!makes_level_set_of(request_, of)) return;
     const auto set = std::make_shared<const LevelSet>(
-        timed("level-set", [&] { return to_host(level_set(*prepared_, request_.level_set_band_vox, *context_)); }));
+        timed("level-set", [&] { return level_set_of_run(request_.level_set, *prepared_, mesh, *context_); }));
     if (request_.stop_after == StopAfter::level_set) record_.report.grid.active_voxels = set->voxels.voxel_count();
     for (const std::string& path : level_set_files(request_))
-      write_step("save-level-set", path, [&] { save_level_set(path, *set, {"surface", false, request_.overwrite}); });
-    if (request_.keep_level_set) set_ = set;
+      write_step("save-level-set", path, [&] { save_level_set(path, *set, level_set_write_options(request_)); });
+    if (request_.level_set.keep) set_ = set;
   }
 
   void save_voronoi(const std::vector<std::string>& paths, bool overwrite) {
     check_shell_is_wanted();
     const SeedSet& seeds = relax().seeds;
     const Prepared& p = *prepared_;
-    if (p.is_in_patches())
-      refuse_use(
-          "a Voronoi stage file does not hold the seeds of creases, borders and lines; give --features off and "
-          "--boundary close, or save the shell");
+    refuse_seeds_of_patches(p);
     const VoronoiLabels labels = timed("flood", [&] { return flood_shell(p.shell(), seeds, *context_); });
     if (options_.values.want_digests)
       record_.report.digests["labels"] = relaxed_->report.digests["labels"] = digest_text(digest(labels));

@@ -83,8 +83,8 @@ void set_stop_after(const std::string& text, Arguments& a) {
 }
 
 void set_level_set_band(const std::string& text, Arguments& a) {
-  a.run.level_set_band_vox = parse_number("--level-set-band", text);
-  check_range("--level-set-band", a.run.level_set_band_vox, kLevelSetBand);
+  a.run.level_set.band_vox = parse_number("--level-set-band", text);
+  check_range("--level-set-band", a.run.level_set.band_vox, kLevelSetBand);
 }
 
 void set_progress(const std::string& text, Arguments& a) {
@@ -180,10 +180,19 @@ std::vector<CommandOption> output_options() {
        text_of(&RunRequest::save_voronoi)},
       {{group, "save-level-set", "F.vdb",
         "also write signed distances around the closed surface, on the grid of --resolution or --voxel-size"},
-       text_of(&RunRequest::save_level_set)},
+       [](const std::string& text, Arguments& a) { a.run.level_set.path = text; }},
       {{group, "level-set-band", "VOX", "how far, in voxels, a level set reaches on both sides", "3", true, false,
         kLevelSetBand},
        set_level_set_band},
+      {{group, "level-set-of", "input|result",
+        "what a level set has the distances to: the surface of INPUT, with its holes closed, or the resulting mesh",
+        "input"},
+       [](const std::string& text, Arguments& a) {
+         a.run.level_set.of = parse_choice<LevelSetOf>("--level-set-of", text,
+                                                       {{"input", LevelSetOf::input}, {"result", LevelSetOf::result}});
+       }},
+      {{group, "level-set-half", "", "write level sets with values of 16 bits, of half the size"},
+       [](const std::string&, Arguments& a) { a.run.level_set.as_half = true; }},
       {{group, "split-regions", "DIR",
         "also write each region of the result as a closed mesh of its own, DIR/NAME or DIR/LABEL, in the format of "
         "OUTPUT"},

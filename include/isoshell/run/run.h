@@ -28,17 +28,30 @@ enum class Measures {
 /// Calls `write`, which writes that file; for who must know while one is being written.
 using AroundWrite = std::function<void(const std::string& path, const std::function<void()>& write)>;
 
+/// What distances are measured to.
+enum class LevelSetOf {
+  input,   ///< the surface that is meshed
+  result,  ///< the mesh, on the lattice of the input's
+};
+
+/// A level set that is made on the way; see LevelSet.
+struct LevelSetRequest {
+  std::string path;                   ///< its file; empty: none
+  double band_vox = 3;                ///< how far it reaches on both sides
+  LevelSetOf of = LevelSetOf::input;  ///< the result must be closed
+  bool as_half = false;               ///< values of 16 bits in the file, as in the output of a run that stops there
+  bool keep = false;                  ///< in the result, beside a file or without one
+};
+
 struct RunRequest {
   InputRequest input;
   RequestedOptions options;  ///< a sizing field without "vertices" among the given ones decides their number
   OutputRequest output;      ///< the mesh, or the stage file when the run stops before it
   StopAfter stop_after = StopAfter::mesh;
   std::string save_shell, save_voronoi;  ///< stage files to write on the way, a preview beside the second; empty: none
-  std::string save_level_set;            ///< level set to write on the way; empty: none
-  double level_set_band_vox = 3;         ///< how far it reaches on both sides
-  bool keep_level_set = false;           ///< in the result, beside a file or without one
-  std::string split_regions;             ///< folder for a file of each region; empty: none
-  std::string statistics;                ///< file, or "-"; empty: none
+  LevelSetRequest level_set;
+  std::string split_regions;  ///< folder for a file of each region; empty: none
+  std::string statistics;     ///< file, or "-"; empty: none
   std::string report;  ///< page that the front writes of the result afterwards, from all that is measured; empty: none
   Gates gates;
   Measures measures = Measures::mesh;
