@@ -37,6 +37,13 @@ struct RunCase {
   int frames = 1;  ///< each begins with the one before; the last one counts
 };
 
+/// The level set of a whole run, with the default band.
+struct LevelSetCase {
+  std::string name;
+  std::function<Input()> input;
+  LevelSetOf of = LevelSetOf::input;
+};
+
 inline RemeshOptions options(int64_t vertices, int32_t resolution, Method method = Method::sheet,
                              int32_t closing_vox = -1) {
   RemeshOptions o;
@@ -144,6 +151,15 @@ inline std::vector<RunCase> run_cases() {
           {"faces with regions", still(labelled_cubes), defaults(500)}};
 }
 
+inline std::vector<LevelSetCase> level_set_cases() {
+  const auto scan = [] { return input_of(read_mesh(source_folder() + "/tests/data/nefertiti.ply"), "scan"); };
+  const auto dirty = [] { return input_of(dirty_torus(), "shape"); };
+  return {{"a closed scan", scan},
+          {"a mesh with holes, flipped and doubled faces", dirty},
+          {"a volume of distances", distances_to_torus},
+          {"the result of a mesh with holes", dirty, LevelSetOf::result}};
+}
+
 /// One block of text a case: counts with their meaning, then a digest per product.
 inline std::string run(const Case& c, Context& context) {
   const RemeshResult result = remesh(c.shape(), c.options, context);
@@ -209,6 +225,28 @@ inline std::string run(const RunCase& c, Context& context) {
   if (!result.mesh.regions.empty()) text += text_of(result.mesh.regions, *result.record.regions);
   for (const Attribute& a : result.mesh.attributes) text += "  attribute " + a.name + " " + digest_of(a.values) + "\n";
   for (const auto& [product, digest] : r.digests) text += "  digest " + product + " " + digest + "\n";
+  return text;
+}
+
+inline std::string run(const LevelSetCase& c, Context& context) {
+  RunRequest request;
+  request.options = requested_options(options(500, 96));
+  request.level_set.of = c.of;
+  request.level_set.keep = true;
+  if (c.of == LevelSetOf::input) request.stop_after = StopAfter::level_set;  // no mesh is needed
+  const RunResult result = isoshell::run(c.input(), request, context);
+  const View<const float> distances = result.level_set->distance_vox.view();
+  const int64_t inside = std::count_if(distances.begin(), distances.end(), [](float d) { return d < 0; });
+  return "level set of " + c.name + "\n  voxels " + std::to_string(distances.size) + "\n  inside " +
+         std::to_string(inside) + "\n  digest " + digest_text(digest(*result.level_set)) + "\n";
+}
+
+/// The golden file as it is now.
+inline std::string all(Context& context) {
+  std::string text;
+  for (const Case& c : cases()) text += run(c, context);
+  for (const RunCase& c : run_cases()) text += run(c, context);
+  for (const LevelSetCase& c : level_set_cases()) text += run(c, context);
   return text;
 }
 

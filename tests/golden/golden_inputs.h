@@ -10,6 +10,7 @@
 
 #include "geometry/given_surface.h"
 #include "isoshell/attribute.h"
+#include "isoshell/io/memory_input.h"
 #include "isoshell/io/point_file.h"
 #include "regions/part_soups.h"
 #include "support/shapes.h"
@@ -160,6 +161,28 @@ inline TriangleSoup bent_plate(double width, double least_thickness) {
   const uint32_t end = 4 * kSteps;
   soup.triangles.insert(soup.triangles.end(), {{end, end + 2, end + 1}, {end, end + 3, end + 2}});
   return soup;
+}
+
+/// Distances to a torus at the points of a lattice, negative inside.
+inline Input distances_to_torus() {
+  constexpr int kSize[3] = {64, 64, 24};
+  constexpr double kStep = 0.1;
+  const WorldPoint first{-3.15, -3.15, -1.15};
+  std::vector<float> values;
+  for (int i = 0; i < kSize[0]; ++i)
+    for (int j = 0; j < kSize[1]; ++j)
+      for (int k = 0; k < kSize[2]; ++k) {
+        const double x = first.x + i * kStep, y = first.y + j * kStep, z = first.z + k * kStep;
+        const double around = std::sqrt(x * x + y * y) - 2;
+        values.push_back(float(std::sqrt(around * around + z * z) - 0.7));
+      }
+  DenseVolume volume;
+  volume.values = values.data();
+  for (size_t axis = 0; axis < 3; ++axis) volume.size[axis] = kSize[axis];
+  volume.stride[0] = kSize[1] * kSize[2], volume.stride[1] = kSize[2], volume.stride[2] = 1;
+  volume.step_world = {WorldPoint{kStep, 0, 0}, WorldPoint{0, kStep, 0}, WorldPoint{0, 0, kStep}};
+  volume.origin_world = first;
+  return input_of(volume, "volume", VolumeReadOptions());
 }
 
 }  // namespace isoshell::golden

@@ -5,8 +5,5 @@
 
 int main() {
   isoshell::Context context;
-  for (const isoshell::golden::Case& c : isoshell::golden::cases())
-    std::fputs(isoshell::golden::run(c, context).c_str(), stdout);
-  for (const isoshell::golden::RunCase& c : isoshell::golden::run_cases())
-    std::fputs(isoshell::golden::run(c, context).c_str(), stdout);
+  std::fputs(isoshell::golden::all(context).c_str(), stdout);
 }
