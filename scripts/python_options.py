@@ -29,7 +29,7 @@ SPECIAL = {
     "features": "Union[float, str]",
     "close-gaps": "Union[float, str]",
     "attributes": "Union[str, Sequence[str]]",
-    "grids": "Union[str, Sequence[str]]",
+    "grids": "Union[str, Sequence[str], Mapping[str, Any]]",
     "recenter": "Union[str, Sequence[float]]",
     "require": "Union[str, Sequence[str]]",
     "max-memory": "Union[int, str]",

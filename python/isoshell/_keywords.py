@@ -110,6 +110,9 @@ def text_of(name: str, given: Any) -> str:
         return repr(value)
     if isinstance(value, (str, os.PathLike)):
         return path_text(value)
+    if name == "grids" and isinstance(value, Mapping):
+        raise Error("grids in memory are those of one run: give them to isoshell.remesh, and name grids of files here",
+                    stage="options")
     if isinstance(value, Mapping):  # an option of the command that may be given more than once
         return "\n".join(f"{_key(name, key)}={_plain(part)!r}" for key, part in value.items())
     if isinstance(value, (list, tuple)) and all(isinstance(part, str) for part in value):

@@ -138,7 +138,7 @@ class Options(TypedDict, total=False):
     smallest_island: Optional[int]
     smoothing: Optional[float]
     periodic: Optional[str]
-    grids: Optional[Union[str, Sequence[str]]]
+    grids: Optional[Union[str, Sequence[str], Mapping[str, Any]]]
     union: bool
     reference: Optional[Path]
     input_format: Optional[str]

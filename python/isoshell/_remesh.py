@@ -9,6 +9,7 @@ from . import _isoshell, _report
 from ._context import Context, OnProgress, Progress
 from ._errors import Error, note, warn
 from ._exchange import format_of
+from ._grids import grids_of
 from ._inputs import Mesh
 from ._level_set import LevelSet
 from ._keywords import PLACE, READING, Keywords, keywords_of
@@ -49,7 +50,9 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
         **options: the options of the command under their names, with underscores: see help(isoshell.Options). Beyond
             what these say, progress may be a function, called as progress(stage, fraction) with a Progress of the whole
             run, stats may be True, to measure everything without writing a file, save_level_set may be True, to have
-            result.level_set without one, and sizing may be an isoshell.Volume of
+            result.level_set without one, grids may be a dict of names and what is in memory: isoshell.Volume, also of
+            three numbers a value, an array on the lattice of a source that is one, grids of OpenVDB's module, bytes of
+            .vdb files, LevelSet; whole numbers are not interpolated. sizing may be an isoshell.Volume of
             edge lengths, or an array (K,) of one for each vertex of a mesh in memory, NaN where it says nothing: between
             them lengths are interpolated on the nearest triangle, which takes a search for each vertex of the sheet.
 
@@ -65,7 +68,7 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
     source = with_faces(source, faces)
     measure_all = takes_true(given, "stats")
     keep_level_set = takes_true(given, "save_level_set")
-    sizing = sizing_of(given)
+    sizing, grids = sizing_of(given), grids_of(given)
     place, progress = settle(context, given)
     target = "" if output is None else path_text(output)
     volumes = stage_files(given)
@@ -77,7 +80,7 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
     keywords_of(given)  # what cannot be is refused before anything is read
     source = opened(source, given)
     keywords = keywords_for(source, given)
-    start = source_of(source, sizing)
+    start = source_of(source, sizing, grids)
     made = _isoshell.remesh(place, start, keywords, "" if is_ours else target, measure_all, keep_level_set, progress,
                             listener(given))
     result = result_of(made, start, keywords, source, volumes)
@@ -173,11 +176,11 @@ def begun(source: SourceLike, faces: tuple[Any, ...], context: Optional[Context]
           given: dict[str, Any]) -> tuple[Any, Any, _isoshell.Source, Keywords]:
     """The place of a run without files, its progress, what it starts from and its keywords; takes what is no keyword
     out of what was given."""
-    sizing = sizing_of(given)
+    sizing, grids = sizing_of(given), grids_of(given)
     place, progress = settle(context, given)
     source = opened(with_faces(source, faces), given)
     keywords = keywords_for(source, given)
-    return place, progress, source_of(source, sizing), keywords
+    return place, progress, source_of(source, sizing, grids), keywords
 
 
 def settle(context: Optional[Context], options: dict[str, Any]) -> tuple[Any, Any]:

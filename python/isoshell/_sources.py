@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Protocol, Sequen
 from ._arrays import array_of, axes_of, first_place, floats_or_nan, masked_array_of, nan_where_masked, shape_of
 from ._exchange import format_of, taken
 from ._errors import Error
+from ._grids import add_grids
 from ._inputs import Mesh, Points, Volume
 from ._isoshell import RunResult, Source
 from ._labels import INT32, Labels, label_of, lattice_of, values_of
@@ -109,9 +110,10 @@ def with_faces(source: Any, faces: Sequence[Any]) -> Any:
     return source, faces[0]
 
 
-def source_of(given: Any, sizing: Any = None) -> Source:
-    """The source that what is opened means, with a sizing field that is in memory."""
+def source_of(given: Any, sizing: Any = None, grids: Optional[Mapping[str, Any]] = None) -> Source:
+    """The source that what is opened means, with a sizing field and grids that are in memory."""
     source = _source_of(given)
+    add_grids(source, grids or {}, given)
     if is_sparse(sizing):
         raise Error("sizing is a sparse volume; give an isoshell.Volume of an array, or a .vdb file of edge lengths")
     if isinstance(sizing, Volume):

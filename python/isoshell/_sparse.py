@@ -37,16 +37,16 @@ def sparse_source_of(volume: Volume) -> Source:
             raise Error(f"{name} is of volumes that are arrays; leave it out for a sparse one")
     values = volume.values
     if not places_itself(values):
-        return Source.sparse(_coordinates_of(volume.coordinates), floats_or_nan("values", values),
-                             _background_of(volume.background), False, *origin_and_steps_of(volume))
-    _refuse_place(volume)
+        return Source.sparse(coordinates_of(volume.coordinates), floats_or_nan("values", values),
+                             background_of(volume.background), False, *origin_and_steps_of(volume))
+    refuse_place(volume)
     if isinstance(values, LevelSet):
         placed = Volume(values.values, affine=values.transform)
         return Source.sparse(values.coordinates, values.values, values.background, True, *origin_and_steps_of(placed))
-    return Source.vdb("volume", _bytes_of(values))
+    return Source.vdb("volume", bytes_of(values))
 
 
-def _refuse_place(volume: Volume) -> None:
+def refuse_place(volume: Volume) -> None:
     is_placed = (triple_of("spacing", volume.spacing) != (1, 1, 1) or triple_of("origin", volume.origin) != (0, 0, 0)
                  or volume.affine is not None)
     if is_placed or volume.coordinates is not None or volume.background is not None:
@@ -54,7 +54,7 @@ def _refuse_place(volume: Volume) -> None:
                     "them; leave out spacing, origin, affine, coordinates and background")
 
 
-def _coordinates_of(given: Any) -> np.ndarray[Any, Any]:
+def coordinates_of(given: Any) -> np.ndarray[Any, Any]:
     import numpy as np
 
     voxels = array_of("coordinates", given)
@@ -67,7 +67,7 @@ def _coordinates_of(given: Any) -> np.ndarray[Any, Any]:
     return np.ascontiguousarray(voxels, np.int32)
 
 
-def _background_of(given: Any) -> float:
+def background_of(given: Any) -> float:
     """NaN where it is to be chosen."""
     if given is None:
         return float("nan")
@@ -77,7 +77,7 @@ def _background_of(given: Any) -> float:
     return float(number)
 
 
-def _bytes_of(values: Any) -> np.ndarray[Any, Any]:
+def bytes_of(values: Any) -> np.ndarray[Any, Any]:
     import numpy as np
 
     held = bytes(values) if isinstance(values, memoryview) and not values.contiguous else values

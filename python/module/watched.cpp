@@ -25,6 +25,7 @@ RequestFromPython request_from_python(const Source& source, const Keywords& keyw
                                       nb::object progress, nb::object tell) {
   RequestFromPython requested{arguments_of(keywords, output), std::move(progress), std::move(tell)};
   RunRequest& request = requested.arguments.run;
+  request.input.given_grids = source.grids;
   if (source.sizing) set_sizing(source.sizing, request.options);
   if (!source.is_file()) {
     if (!request.input.format.empty())

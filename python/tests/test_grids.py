@@ -83,6 +83,62 @@ def test_memory_and_meshes_take_grids_of_files(frames, ball):
         isoshell.remesh(f"{file}:surface", grids="w", **SMALL)
 
 
+def lattice(size=17, step=0.25):
+    """Places of an array around a ball of radius 1."""
+    return step * (np.stack(np.meshgrid(*3 * [np.arange(size)], indexing="ij"), -1) - size // 2)
+
+
+def test_arrays_on_the_lattice_of_a_volume_are_values_of_its_vertices():
+    at = lattice()
+    source = isoshell.Volume(np.linalg.norm(at, axis=-1) - 1, spacing=0.25, origin=-2)
+    result = isoshell.remesh(source, grids={"heat": at[..., 0], "v": at * (2, 3, 4), "side": (at[..., 0] > 0).astype(int)}, **SMALL)
+    found, where = result.attributes, result.vertices
+    assert list(found) == ["heat", "v.0", "v.1", "v.2", "side"]
+    assert np.allclose(found["heat"], where[:, 0], atol=1e-5)
+    assert np.allclose(np.stack([found[f"v.{i}"] for i in range(3)], 1), where * (2, 3, 4), atol=1e-4)
+    assert found["side"].dtype == np.int32 and set(found["side"]) == {0, 1}
+    assert isoshell.estimate(source, grids={"heat": at[..., 0]}, **SMALL)["sites"] > 0
+
+
+def test_any_source_takes_grids_that_say_where_they_stand(ball, tmp_path):
+    at = lattice().astype(np.float32)
+    everywhere = np.indices(at.shape[:3]).reshape(3, -1).T
+    sparse = {"coordinates": everywhere, "spacing": 0.25, "origin": -2}
+    distances = isoshell.level_set(ball, resolution=40)
+    result = isoshell.remesh(ball, grids={
+        "dense": isoshell.Volume(at[..., 1], spacing=0.25, origin=-2),
+        "sparse": isoshell.Volume(at[..., 1].reshape(-1), **sparse), "v": isoshell.Volume(at.reshape(-1, 3), **sparse),
+        "distance": distances}, **SMALL)
+    found, where = result.attributes, result.vertices
+    assert np.allclose(found["dense"], where[:, 1], atol=1e-5) and np.array_equal(found["dense"], found["sparse"])
+    assert np.allclose(found["v.2"], where[:, 2], atol=1e-5)
+    assert np.abs(found["distance"]).max() < distances.voxel_size
+    distances.save(tmp_path / "set.vdb")
+    of_file = isoshell.remesh(ball, grids={"distance": (tmp_path / "set.vdb").read_bytes()}, **SMALL)
+    assert np.allclose(of_file.attributes["distance"], found["distance"], atol=1e-6)
+    with pytest.raises(isoshell.Error, match="has no grid .w."):
+        isoshell.remesh(ball, grids=f"{tmp_path}/set.vdb:w", **SMALL)
+
+
+def test_grids_in_memory_that_cannot_be_are_refused(ball):
+    at = lattice()
+
+    def refusal(given, source=ball):
+        with pytest.raises(isoshell.Error) as refused:
+            isoshell.remesh(source, grids={"heat": given}, **SMALL)
+        assert refused.value.code == ErrorCode.USAGE
+        return str(refused.value)
+
+    assert "say where it stands" in refusal(at[..., 0])
+    assert "it must be an isoshell.Volume" in refusal("heat")
+    assert "has the shape (17, 17, 17, 2)" in refusal(isoshell.Volume(at[..., :2]))
+    assert "not interpolated" in refusal(isoshell.Volume((at[..., 0] * 1e8).astype(np.int64)))
+    with pytest.raises(isoshell.Error, match="a name of grids is 3"):
+        isoshell.remesh(ball, grids={3: isoshell.Volume(at[..., 0])}, **SMALL)
+    with pytest.raises(isoshell.Error, match="those of one run"):
+        list(isoshell.remesh_many([ball], grids={"heat": isoshell.Volume(at[..., 0])}, **SMALL))
+
+
 def test_a_stage_has_velocities_colours_and_vectors(frames, tmp_path):
     pxr = pytest.importorskip("pxr.UsdGeom", reason="needs usd-core: pip install usd-core")
     from pxr import Usd

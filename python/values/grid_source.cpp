@@ -1,12 +1,16 @@
 #include "values/grid_source.h"
 
+#include <nanobind/stl/array.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "isoshell/error.h"
 #include "isoshell/io/memory_grid.h"
+#include "isoshell/io/memory_input.h"
 #include "isoshell/run/run.h"
+#include "values/labels.h"
 
 namespace nb = nanobind;
 
@@ -43,6 +47,12 @@ View<const float> values_of(const AnyArray& array) {
   return {first, int64_t(array.shape(0))};
 }
 
+View<const char> bytes_of(const AnyArray& bytes) {
+  if (bytes.ndim() != 1 || !is_of(bytes, nb::dlpack::dtype_code::UInt, 8) || !is_packed(bytes))
+    refuse("the bytes of a volume must be uint8 in one row, without gaps");
+  return {static_cast<const char*>(bytes.data()), int64_t(bytes.shape(0))};
+}
+
 /// The largest magnitude of those that are finite.
 double largest_of(View<const float> values) {
   float largest = 0;
@@ -51,7 +61,56 @@ double largest_of(View<const float> values) {
   return double(largest);
 }
 
+using Steps = std::array<Triple, 3>;  // from a value to the next, along each axis of the array
+
+std::array<WorldPoint, 3> steps_of(const Steps& steps) {
+  return {point_of(steps[0]), point_of(steps[1]), point_of(steps[2])};
+}
+
+GivenGrid dense_grid(const std::string& name, const AnyArray& values, bool is_whole, const Triple& origin,
+                     const Steps& steps) {
+  DenseVolume volume;
+  volume.values = floats_of("values", values, 3);
+  for (size_t i = 0; i < 3; ++i) volume.size[i] = int64_t(values.shape(i)), volume.stride[i] = values.stride(i);
+  volume.step_world = steps_of(steps);
+  volume.origin_world = point_of(origin);
+  return {grid_field(volume, name, is_whole)};
+}
+
+GivenGrid sparse_grid_of(const std::string& name, const AnyArray& coordinates, const AnyArray& values,
+                         double background, const Triple& origin, const Steps& steps) {
+  const SparseVolume volume{voxels_of(coordinates), values_of(values), background, false,
+                            steps_of(steps),        point_of(origin)};
+  return {grid_field(sparse_grid(volume, name), name)};
+}
+
+GivenGrid vdb_grid(const std::string& name, const AnyArray& bytes) {
+  return {grid_field_of_vdb(bytes_of(bytes), name)};
+}
+
+GivenGrid vector_grid(const std::string& name, const GivenGrid& x, const GivenGrid& y, const GivenGrid& z) {
+  return {vector_field(name, {x.field, y.field, z.field})};
+}
+
 }  // namespace
+
+void bind_given_grid(nb::module_& m) {
+  nb::class_<GivenGrid>(m, "GivenGrid", "Values that vertices of a result get.")
+      .def_static(
+          "dense", dense_grid, nb::arg("name"), nb::arg("values"), nb::arg("is_whole"), nb::arg("origin"),
+          nb::arg("steps"),
+          nb::sig("def dense(name: str, values: typing.Any, is_whole: bool, origin: collections.abc.Sequence[float], "
+                  "steps: collections.abc.Sequence[collections.abc.Sequence[float]]) -> GivenGrid"))
+      .def_static(
+          "sparse", sparse_grid_of, nb::arg("name"), nb::arg("coordinates"), nb::arg("values"), nb::arg("background"),
+          nb::arg("origin"), nb::arg("steps"),
+          nb::sig("def sparse(name: str, coordinates: typing.Any, values: typing.Any, background: float, origin: "
+                  "collections.abc.Sequence[float], steps: "
+                  "collections.abc.Sequence[collections.abc.Sequence[float]]) -> GivenGrid"))
+      .def_static("vdb", vdb_grid, nb::arg("name"), nb::arg("bytes"),
+                  nb::sig("def vdb(name: str, bytes: typing.Any) -> GivenGrid"))
+      .def_static("vector", vector_grid, nb::arg("name"), nb::arg("x"), nb::arg("y"), nb::arg("z"));
+}
 
 Source sparse_source(const AnyArray& coordinates, const AnyArray& values, double background, bool is_level_set,
                      const WorldPoint& origin, const std::array<WorldPoint, 3>& steps) {
@@ -71,9 +130,7 @@ Source sparse_source(const AnyArray& coordinates, const AnyArray& values, double
 }
 
 Source vdb_source(const std::string& name, const AnyArray& bytes) {
-  if (bytes.ndim() != 1 || !is_of(bytes, nb::dlpack::dtype_code::UInt, 8) || !is_packed(bytes))
-    refuse("the bytes of a volume must be uint8 in one row, without gaps");
-  const View<const char> given{static_cast<const char*>(bytes.data()), int64_t(bytes.shape(0))};
+  const View<const char> given = bytes_of(bytes);
   Source source;
   source.read = [name, given](const RunRequest& request, const Context& context) {
     return input_of_vdb(given, name, input_request_of(request), context, request.tell);

@@ -14,6 +14,13 @@ namespace isoshell::python {
 Source sparse_source(const AnyArray& coordinates, const AnyArray& values, double background, bool is_level_set,
                      const WorldPoint& origin, const std::array<WorldPoint, 3>& steps);
 
+/// Values that vertices of a result get.
+struct GivenGrid {
+  std::shared_ptr<const GridField> field;
+};
+
+void bind_given_grid(nanobind::module_& m);
+
 /// Borrows the bytes until the run has read them. `name` is what messages call the volume.
 Source vdb_source(const std::string& name, const AnyArray& bytes);
 

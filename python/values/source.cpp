@@ -258,6 +258,7 @@ RunResult run_from(const ReadMemory& read, const RunRequest& request, Context& c
 }
 
 void bind_source(nb::module_& m) {
+  bind_given_grid(m);
   nb::class_<Source>(m, "Source", "What one run starts from.")
       .def_prop_ro("is_file", &Source::is_file)
       .def_static("file", file, nb::arg("path"))
@@ -291,6 +292,9 @@ void bind_source(nb::module_& m) {
            nb::arg("faces"),
            nb::sig("def set_velocities_of_vertices(self, velocities: typing.Any, vertices: typing.Any, faces: "
                    "typing.Any) -> None"))
+      .def(
+          "add_grid", [](Source& source, const GivenGrid& grid) { source.grids.push_back(grid.field); },
+          nb::arg("grid"))
       .def("set_sizing", set_sizing, nb::arg("lengths"), nb::arg("origin"), nb::arg("steps"),
            nb::sig("def set_sizing(self, lengths: typing.Any, origin: collections.abc.Sequence[float], steps: "
                    "collections.abc.Sequence[collections.abc.Sequence[float]]) -> None"))

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "isoshell/previous_frame.h"
 #include "isoshell/run/run.h"
@@ -23,7 +24,8 @@ struct Source {
   /// Where the surface goes until the next frame, once that has been read; empty: no array says it.
   std::function<std::shared_ptr<const VelocityField>()> velocity = {};
 
-  std::shared_ptr<TriangleSoup> surface = {};  ///< of a mesh in memory, until a run takes it
+  std::shared_ptr<TriangleSoup> surface = {};                ///< of a mesh in memory, until a run takes it
+  std::vector<std::shared_ptr<const GridField>> grids = {};  ///< whose values vertices of the result get
 
   bool is_file() const { return !read; }
 };

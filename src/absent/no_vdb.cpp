@@ -5,6 +5,7 @@
 #include "io/vdb/volume_readers.h"
 #include "isoshell/error.h"
 #include "isoshell/io/memory_grid.h"
+#include "isoshell/io/memory_input.h"
 #include "isoshell/io/sizing_vdb.h"
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/velocity_vdb.h"
@@ -74,6 +75,12 @@ std::vector<std::shared_ptr<const GridField>> read_grid_fields(const MeshSource&
 std::vector<std::shared_ptr<const GridField>> read_grid_fields(const std::string& path, const std::vector<std::string>&,
                                                                int64_t) {
   throw_without_openvdb(ErrorCode::unreadable_input, path);
+}
+std::shared_ptr<const GridField> grid_field_of_vdb(View<const char>, const std::string& name) {
+  throw_without_openvdb(ErrorCode::unreadable_input, name);
+}
+std::shared_ptr<const GridField> grid_field(const DenseVolume&, const std::string& name, bool) {
+  throw_without_openvdb(ErrorCode::unreadable_input, name);
 }
 StageFile read_stage(const MeshSource& source) { throw_without_openvdb(ErrorCode::unreadable_input, source.name()); }
 

@@ -111,6 +111,10 @@ Input input_of(const MemoryGrid& grid, const std::string& name, const InputReque
   return reader.taken();
 }
 
+std::shared_ptr<const GridField> grid_field(const MemoryGrid& grid, const std::string& name) {
+  return grid.held().sampled(name);
+}
+
 Input input_of_vdb(View<const char> bytes, const std::string& name, const InputRequest& request, const Context& context,
                    const Tell& tell) {
   InputReader reader(name, context, tell);

@@ -178,6 +178,10 @@ class HeldNanoGrid final : public HeldGrid {
     return field;
   }
   LabelVolume label_volume(const std::string&, const LabelReadOptions&) const override { return {}; }
+  std::shared_ptr<const GridField> sampled(const std::string& name) const override {
+    throw Error(ErrorCode::usage, "arguments",
+                "grid " + name + " is one of NanoVDB, whose values are not sampled; convert it by nanoToOpenVDB()");
+  }
 
  private:
   const View<const std::byte> bytes_;

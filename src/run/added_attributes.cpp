@@ -102,21 +102,24 @@ void add_motion_attributes(const PreviousFrame& previous, TriangleMesh& mesh) {
   }
 }
 
-void read_other_grids(const std::vector<std::string>& names, Input& input, const Context& context) {
+void read_other_grids(const InputRequest& request, Input& input, const Context& context) {
+  const std::vector<std::string>& names = request.grids;
   const auto own =
       std::find_if(names.begin(), names.end(), [](const std::string& name) { return grid_name_of(name).file.empty(); });
   if (own != names.end() && !input.grids)
     refuse_use("--grids names '" + *own + "', and " + input.facts.name() +
                " is no volume of a .vdb file; name a grid of a file, as FILE.vdb:NAME");
   const auto files = grids_by_file(names);
-  if (!files.empty() && !input.grids) input.grids.emplace();
+  if (!input.grids && (!files.empty() || !request.given_grids.empty())) input.grids.emplace();
+  const auto add = [&](const std::shared_ptr<const GridField>& field) {
+    const auto has_its_name = [&](const auto& other) { return other->name() == field->name(); };
+    if (std::any_of(input.grids->begin(), input.grids->end(), has_its_name))
+      refuse_use("--grids names two grids '" + field->name() + "', whose values would have one name; leave one out");
+    input.grids->push_back(field);
+  };
   for (const auto& [file, grids] : files)
-    for (auto& field : read_grid_fields(file, grids, context.memory_limit_bytes)) {
-      const auto has_its_name = [&](const auto& other) { return other->name() == field->name(); };
-      if (std::any_of(input.grids->begin(), input.grids->end(), has_its_name))
-        refuse_use("--grids names two grids '" + field->name() + "', whose values would have one name; leave one out");
-      input.grids->push_back(std::move(field));
-    }
+    for (const auto& field : read_grid_fields(file, grids, context.memory_limit_bytes)) add(field);
+  for (const auto& field : request.given_grids) add(field);
 }
 
 void add_grid_attributes(const Input& input, const std::string& format, TriangleMesh& mesh, AttributeReport& report,

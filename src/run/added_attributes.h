@@ -15,9 +15,10 @@ namespace isoshell {
 /// vx, vy and vz, its motion since then in world units, 0 where it was born; in place of the input's of these names.
 void add_motion_attributes(const PreviousFrame& previous, TriangleMesh& mesh);
 
-/// Reads the grids of files of their own among those that are asked for, behind those of the input's file. Throws:
-/// usage for one of the input's where that has none, and for two of one name; as read_grid_fields() does.
-void read_other_grids(const std::vector<std::string>& names, Input& input, const Context& context);
+/// Reads the grids of files of their own among those that are asked for, behind those of the input's file, and adds
+/// those in memory. Throws: usage for one of the input's where that has none, and for two of one name; as
+/// read_grid_fields() does.
+void read_other_grids(const InputRequest& request, Input& input, const Context& context);
 
 /// Gives the vertices what the input's grids have where they are: numbers under a grid's name, three numbers as NAME.0,
 /// NAME.1 and NAME.2, or as the colour where real ones are called Cd or color; in place of other attributes of these

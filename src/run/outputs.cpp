@@ -183,7 +183,7 @@ void check_request(const RunRequest& r) {
   if (!r.report.empty() && r.stop_after != StopAfter::mesh) refuse_use("--report needs a mesh; leave out --stop-after");
   if (!r.split_regions.empty() && r.stop_after != StopAfter::mesh)
     refuse_use("--split-regions needs a mesh; leave out --stop-after");
-  if (!r.input.grids.empty() && r.stop_after != StopAfter::mesh)
+  if (r.input.samples_grids() && r.stop_after != StopAfter::mesh)
     refuse_use("--grids needs a mesh; leave out --stop-after");
   if (r.report == "-") refuse_use("--report cannot be written to standard output; name a file");
   possible_features(r.options.values, r);

@@ -82,8 +82,7 @@ class RunSteps::Run {
   void take(Input input) {
     input_ = std::move(input);
     record_.input = input_->facts;
-    if (!request_.input.grids.empty())
-      timed("grids", [&] { read_other_grids(request_.input.grids, *input_, *context_); });
+    if (request_.input.samples_grids()) timed("grids", [&] { read_other_grids(request_.input, *input_, *context_); });
     if (!input_->stage) return;
     options_ = adopt_options(*input_->stage, input_->facts.path, options_);
     check_together(options_);

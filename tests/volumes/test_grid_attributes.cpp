@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "isoshell/error.h"
+#include "isoshell/io/memory_input.h"
 #include "isoshell/io/mesh_file.h"
+#include "isoshell/openvdb.h"
 #include "isoshell/run/sequence.h"
 #include "support/catch.h"
 #include "support/mesh_files.h"
@@ -148,6 +150,77 @@ TEST_CASE("grids: those of other files are values of any result, also of a mesh"
   stops.stop_after = StopAfter::shell;
   stops.output = named_output(ball.folder / "shell.vdb", "", StopAfter::shell);
   CHECK(contains(refusal(stops), "--grids needs a mesh"));
+}
+
+TEST_CASE("grids: those in memory give a result the values of their file", "[grids][run]") {
+  const Ball ball;
+  const openvdb::GridPtrVec grids = ball_with_values();
+  const auto values_of = [](const RunRequest& request) {
+    TestContext context;
+    std::vector<double> values;
+    for (const Attribute& a : run(request, context).mesh.attributes)
+      values.insert(values.end(), a.values.begin(), a.values.end());
+    return values;
+  };
+  const std::vector<double> of_file = values_of(ball.asks({"v", "side", "heat of it"}));
+  CHECK(of_file.size() == 5 * 400);
+  RunRequest request = ball.asks({"v"});
+  request.input.given_grids = {grid_field(read_grid(*grids[4]), "side"),
+                               grid_field(read_grid(*grids[3]), "heat of it")};
+  CHECK(values_of(request) == of_file);
+  request.input.grids = {};
+  const std::string bytes = get_file(ball.folder / "ball.vdb");
+  const View<const char> file{bytes.data(), int64_t(bytes.size())};
+  request.input.given_grids = {grid_field_of_vdb(file, "v"), grid_field_of_vdb(file, "side"),
+                               grid_field_of_vdb(file, "heat of it")};
+  CHECK(values_of(request) == of_file);
+  request.input.given_grids.push_back(request.input.given_grids[0]);
+  CHECK(contains(refusal(request), "two grids 'v'"));
+  CHECK(
+      contains(message_of(ErrorCode::usage, [&] { grid_field(read_grid(*grids[5]), "mask"); }), "has type Tree_bool"));
+  CHECK(contains(message_of(ErrorCode::usage, [&] { grid_field_of_vdb(file, "w"); }), "has no grid \"w\""));
+}
+
+TEST_CASE("grids: an array gives a result its values, and three of them a vector", "[grids][run]") {
+  const Ball ball;
+  constexpr int kSide = 17;
+  std::vector<float> along[3], sides;
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j)
+      for (int k = 0; k < kSide; ++k) {
+        const int at[3] = {i - 8, j - 8, k - 8};
+        for (size_t axis = 0; axis < 3; ++axis) along[axis].push_back(.4f * float(at[axis]));
+        sides.push_back(i > 8 ? 7.f : -7.f);
+      }
+  const auto volume_of = [](const std::vector<float>& values) {
+    DenseVolume volume;
+    volume.values = values.data();
+    for (int64_t& size : volume.size) size = kSide;
+    volume.stride[0] = int64_t(kSide) * kSide, volume.stride[1] = kSide, volume.stride[2] = 1;
+    volume.step_world = {WorldPoint{.4, 0, 0}, WorldPoint{0, .4, 0}, WorldPoint{0, 0, .4}};
+    volume.origin_world = {-3.2, -3.2, -3.2};
+    return volume;
+  };
+  RunRequest request = ball.asks({});
+  request.input.given_grids = {
+      vector_field("at", {grid_field(volume_of(along[0]), "x"), grid_field(volume_of(along[1]), "y"),
+                          grid_field(volume_of(along[2]), "z")}),
+      grid_field(volume_of(sides), "side", true)};
+  TestContext context;
+  const RunResult result = run(request, context);
+  const std::vector<Attribute>& of = result.mesh.attributes;
+  REQUIRE(names_of(of) == Names{"at.0", "at.1", "at.2", "side"});
+  double worst = 0;
+  int64_t wrong_sides = 0;
+  for (size_t i = 0; i < result.mesh.vertices.size(); ++i) {
+    const WorldPoint& p = result.mesh.vertices[i];
+    worst = std::max({worst, std::abs(named(of, "at.0").values[i] - p.x), std::abs(named(of, "at.1").values[i] - p.y),
+                      std::abs(named(of, "at.2").values[i] - p.z)});
+    wrong_sides += std::abs(p.x - .2) > .01 && named(of, "side").values[i] != (p.x > .2 ? 7 : -7);
+  }
+  CHECK(worst < 1e-5);
+  CHECK(wrong_sides == 0);
+  CHECK(named(of, "side").type == NumberType::i32);
 }
 
 TEST_CASE("grids: each frame of a sequence has its own, and is made again where they are others", "[grids][sequence]") {

@@ -1,11 +1,13 @@
 // Grids of .vdb files beside the one that is meshed, sampled where the vertices of a result are.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "isoshell/advanced/buffer.h"
 #include "isoshell/advanced/lattice.h"
 #include "isoshell/attribute.h"
 
@@ -54,5 +56,14 @@ class GridField {
 std::vector<std::shared_ptr<const GridField>> read_grid_fields(const std::string& path,
                                                                const std::vector<std::string>& names,
                                                                int64_t max_bytes = 0);
+
+/// One grid in the bytes of a .vdb file, or of a stream that OpenVDB wrote: that of this name, or else the only one
+/// that can be sampled. Its values have the name. Borrows the bytes for the call. Throws: as the other does.
+std::shared_ptr<const GridField> grid_field_of_vdb(View<const char> bytes, const std::string& name);
+
+/// Three grids of numbers as one of vectors. Outside of it is what is outside of the first one. Sampling throws usage
+/// for one of vectors.
+std::shared_ptr<const GridField> vector_field(const std::string& name,
+                                              std::array<std::shared_ptr<const GridField>, 3> components);
 
 }  // namespace isoshell

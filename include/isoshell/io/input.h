@@ -61,6 +61,10 @@ struct InputRequest {
   bool unite = false;                   ///< of several level sets: one surface around all of them
   std::string reference = {};           ///< of several level sets: a mesh or level set, named as INPUT is, what was cut
   std::vector<std::string> grids = {};  ///< whose values vertices of the result get, as grid_name_of() takes them
+  std::vector<std::shared_ptr<const GridField>> given_grids = {};  ///< the same of grids in memory
+
+  /// Whether vertices get values of any.
+  bool samples_grids() const { return !grids.empty() || !given_grids.empty(); }
 };
 
 /// The request that a person's words mean: "FILE.vdb:NAME" and "FILE.nvdb:NAME" name a grid; a format in upper case or

@@ -61,6 +61,10 @@ Buffer<std::byte> nano_level_set(const LevelSet& level_set, const std::string& n
 Input input_of(const MemoryGrid& grid, const std::string& name, const InputRequest& request, const Context& context,
                const Tell& tell = {});
 
+/// The grid's values for InputRequest::given_grids, under a name. Throws: usage for a grid of a type that is not
+/// sampled, as those of NanoVDB (nanoToOpenVDB() converts them).
+std::shared_ptr<const GridField> grid_field(const MemoryGrid& grid, const std::string& name);
+
 /// What read_input() gives of a file of these bytes, which are those of a .vdb or .nvdb file, or of a stream that
 /// OpenVDB wrote. Borrows them for the call. Throws: as read_input() does.
 Input input_of_vdb(View<const char> bytes, const std::string& name, const InputRequest& request, const Context& context,

@@ -43,6 +43,11 @@ struct DenseVolume {
 TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& name, const VolumeReadOptions& options,
                                VolumeInfo& info);
 
+/// The values for InputRequest::given_grids, under a name: a grid of floats, or of whole numbers, which are not
+/// interpolated. Places beyond the array, and where values are NaN, have 0. A copy of them. Throws: usage for steps
+/// that span no volume; unreadable_input in a build without OpenVDB.
+std::shared_ptr<const GridField> grid_field(const DenseVolume& volume, const std::string& name, bool is_whole = false);
+
 /// The walls between voxels of different labels, faired within the voxels: every region is bounded by closed triangles,
 /// which it shares with those beside it (see implicit/labels). `surface.regions` says what they part. Result: the same
 /// for any number of threads. Islands of fewer than volume.smallest_island_vox voxels are absorbed first, which is

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 
 #include "core/hash_bytes.h"
 #include "core/number_type.h"
+#include "io/openvdb/dense_lattice.h"
 #include "io/openvdb/field_grid.h"
+#include "io/openvdb/field_of_grid.h"
 #include "io/openvdb/vdb_grids.h"
 #include "io/openvdb/vdb_stream.h"
 #include "io/vdb/grid_fields.h"
@@ -124,21 +127,48 @@ class VdbGridField final : public GridField {
 
 using Field = std::shared_ptr<const GridField>;
 
+constexpr char kWhatIsSampled[] = "--grids takes grids of floats, whole numbers, and three of them";
+
 template <class Value>
-Field field_of(const std::string& name, uint64_t digest, openvdb::GridBase::Ptr grid) {
-  return std::make_shared<VdbGridField<Value>>(name, digest, std::static_pointer_cast<VdbGrid<Value>>(std::move(grid)));
+Field field_of(const std::string& name, uint64_t digest, openvdb::GridBase::ConstPtr grid) {
+  return std::make_shared<VdbGridField<Value>>(name, digest,
+                                               std::static_pointer_cast<const VdbGrid<Value>>(std::move(grid)));
+}
+
+/// Of what its leaves hold, where they are, and what is around them.
+template <class Value>
+uint64_t digest_of(const openvdb::GridBase& of) {
+  const auto& grid = static_cast<const VdbGrid<Value>&>(of);
+  const Value background = grid.background();
+  const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+  std::vector<uint64_t> parts = {hash_bytes(&background, sizeof background),
+                                 hash_bytes(matrix.asPointer(), 16 * int64_t(sizeof(double)))};
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+    const openvdb::Coord at = leaf->origin();
+    const auto mask = leaf->getValueMask();
+    parts.insert(parts.end(),
+                 {hash_bytes(at.asPointer(), 3 * int64_t(sizeof(int32_t))), hash_bytes(&mask, int64_t(sizeof mask)),
+                  hash_bytes(leaf->buffer().data(), 512 * int64_t(sizeof(Value)))});
+  }
+  return hash_bytes(parts.data(), int64_t(parts.size() * sizeof parts[0]));
 }
 
 struct Sampled {
   const char* tree_type;
-  Field (*field)(const std::string& name, uint64_t digest, openvdb::GridBase::Ptr grid);
+  Field (*field)(const std::string& name, uint64_t digest, openvdb::GridBase::ConstPtr grid);
+  uint64_t (*digest)(const openvdb::GridBase& grid);
 };
 
+template <class Value>
+constexpr Sampled as_sampled(const char* tree_type) {
+  return {tree_type, field_of<Value>, digest_of<Value>};
+}
+
 constexpr Sampled kSampled[] = {
-    {"Tree_float_5_4_3", field_of<float>},          {"Tree_double_5_4_3", field_of<double>},
-    {"Tree_int32_5_4_3", field_of<int32_t>},        {"Tree_int64_5_4_3", field_of<int64_t>},
-    {"Tree_vec3s_5_4_3", field_of<openvdb::Vec3f>}, {"Tree_vec3d_5_4_3", field_of<openvdb::Vec3d>},
-    {"Tree_vec3i_5_4_3", field_of<openvdb::Vec3i>},
+    as_sampled<float>("Tree_float_5_4_3"),          as_sampled<double>("Tree_double_5_4_3"),
+    as_sampled<int32_t>("Tree_int32_5_4_3"),        as_sampled<int64_t>("Tree_int64_5_4_3"),
+    as_sampled<openvdb::Vec3f>("Tree_vec3s_5_4_3"), as_sampled<openvdb::Vec3d>("Tree_vec3d_5_4_3"),
+    as_sampled<openvdb::Vec3i>("Tree_vec3i_5_4_3"),
 };
 
 /// Null for grids that are not sampled.
@@ -168,23 +198,35 @@ class Reader {
              (found->instance ? "shares the values of another one" : "has type " + found->type));
     read(*found);
   }
+  /// The grid of that name, or else the only one that can be; the field has the name.
+  void read_only(const std::string& name) {
+    const VdbGridSpan* found = nullptr;
+    for (const VdbGridSpan& grid : grids_) {
+      if (!sampled(grid) || (found && grid.name != name)) continue;
+      if (found && found->name == name) break;
+      found = &grid;
+    }
+    const auto can_be = std::count_if(grids_.begin(), grids_.end(), [](const auto& grid) { return sampled(grid); });
+    if (!found || (found->name != name && can_be > 1)) refuse("has no grid \"" + name + "\"");
+    read(*found, name);
+  }
   std::vector<Field> taken() { return std::move(fields_); }
 
  private:
-  void read(const VdbGridSpan& grid) {
-    const auto is_it = [&](const Field& field) { return field->name() == grid.name; };
+  void read(const VdbGridSpan& grid) { read(grid, grid.name); }
+  void read(const VdbGridSpan& grid, const std::string& name) {
+    const auto is_it = [&](const Field& field) { return field->name() == name; };
     if (std::any_of(fields_.begin(), fields_.end(), is_it)) return;
     const uint64_t digest = hash_bytes(source_.begin() + grid.content, grid.end - grid.content);
     try {
-      fields_.push_back(sampled(grid)->field(grid.name, digest, read_counted_grid(source_, grid)));
+      fields_.push_back(sampled(grid)->field(name, digest, read_counted_grid(source_, grid)));
     } catch (const std::bad_alloc&) {
       throw Error(ErrorCode::out_of_memory, "read", source_.name() + ": out of memory; leave out --grids " + grid.name);
     }
   }
   [[noreturn]] void refuse(const std::string& what) const {
     throw Error(ErrorCode::usage, "read",
-                source_.name() + ": " + what + "; --grids takes grids of floats, whole numbers, and three of them. " +
-                    "Its grids are: " + list_of(grids_));
+                source_.name() + ": " + what + "; " + kWhatIsSampled + ". Its grids are: " + list_of(grids_));
   }
 
   const MeshSource& source_;
@@ -209,6 +251,33 @@ std::vector<Field> read_grid_fields(const std::string& path, const std::vector<s
   Reader reader(source);
   for (const std::string& name : names) reader.read(name);
   return reader.taken();
+}
+
+Field grid_field_of_vdb(View<const char> bytes, const std::string& name) {
+  initialize_openvdb();
+  const MeshSource source(name, bytes);
+  Reader reader(source);
+  reader.read_only(name);
+  return reader.taken().front();
+}
+
+Field field_of_values(const openvdb::GridBase::ConstPtr& grid, const std::string& name) {
+  VdbGridSpan span;
+  span.type = grid->type();
+  const Sampled* const kind = sampled(span);
+  if (!kind)
+    throw Error(ErrorCode::usage, "arguments", "grid " + name + " has type " + grid->type() + "; " + kWhatIsSampled);
+  return kind->field(name, kind->digest(*grid), grid);
+}
+
+Field grid_field(const DenseVolume& volume, const std::string& name, bool is_whole) {
+  const auto read = [&](int64_t i, int64_t j, int64_t k, auto& value) {
+    const float given = value_of(volume, i, j, k);
+    if (!std::isnan(given)) value = std::decay_t<decltype(value)>(given);
+    return !std::isnan(given);
+  };
+  if (is_whole) return field_of_values(dense_grid<VdbIntGrid>(volume, name, read), name);
+  return field_of_values(dense_grid<VdbFloatGrid>(volume, name, read), name);
 }
 
 }  // namespace isoshell

@@ -46,6 +46,9 @@ class HeldVdbGrid final : public HeldGrid {
   LabelVolume label_volume(const std::string& place, const LabelReadOptions& options) const override {
     return labels_of_grid(MeshSource(place, View<const char>{}), *grid_, labels(), texts_, 0, options);
   }
+  std::shared_ptr<const GridField> sampled(const std::string& name) const override {
+    return field_of_values(grid_, name);
+  }
 
  private:
   const openvdb::GridBase::ConstPtr grid_;
@@ -207,7 +210,9 @@ MemoryGrid read_grid(const openvdb::GridBase& grid) {
 
 MemoryGrid sparse_grid(const SparseVolume& volume, const std::string& name, int64_t memory_limit_bytes) {
   initialize_openvdb();
-  return held(SparseGrid(volume, name).made(memory_limit_bytes), lattice_map(volume.step_world, volume.origin_world));
+  const VdbFloatGrid::Ptr grid = SparseGrid(volume, name).made(memory_limit_bytes);
+  grid->setTransform(transform_of(volume.step_world, volume.origin_world));
+  return held(grid, lattice_map(volume.step_world, volume.origin_world));
 }
 
 }  // namespace isoshell

@@ -7,6 +7,7 @@
 
 #include "implicit/volumes/scalar_field.h"
 #include "io/vdb/volume_readers.h"
+#include "isoshell/io/grid_field.h"
 #include "isoshell/io/label_file.h"
 
 namespace isoshell {
@@ -24,6 +25,8 @@ class HeldGrid {
   virtual std::unique_ptr<ScalarField> field() const = 0;
   /// Of a grid of labels. `place` is what messages call where it is. Throws: as read_labels().
   virtual LabelVolume label_volume(const std::string& place, const LabelReadOptions& options) const = 0;
+  /// Its values anywhere. Throws: usage for a grid that is not sampled.
+  virtual std::shared_ptr<const GridField> sampled(const std::string& name) const = 0;
 
  private:
   VolumeGrid volume_, labels_;
