@@ -8,6 +8,7 @@
 #include "isoshell/advanced/stages.h"
 #include "isoshell/advanced/to_host.h"
 #include "isoshell/advanced/transfer_attributes.h"
+#include "isoshell/advanced/voxel_set_of_leaves.h"
 #include "isoshell/advanced/workers.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/borders.h"

@@ -144,7 +144,8 @@ class Volume:
         values: (X, Y, Z) numbers, used as float32; values[i, j, k] stands at origin + (i, j, k) * spacing. Where the
             array begins with z, give values.transpose(2, 1, 0): that takes no copy. With coordinates (K,) numbers. Or
             what knows where it stands: a grid of OpenVDB's module (pyopenvdb, openvdb) or an isoshell.LevelSet, and
-            bytes, which are those of a .vdb or .nvdb file. Of a grid, level set or file of whole numbers the result has
+            bytes, which are those of a .vdb or .nvdb file, or of a grid of NanoVDB as it is in memory (of an array of
+            bytes its memoryview). Of a grid, level set or file of whole numbers the result has
             regions.
         spacing: world units from a value to the next, above 0, one number or one an axis.
         origin: where values[0, 0, 0] stands, world units.

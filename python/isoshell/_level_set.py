@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 class LevelSet:
     """Signed distances around the solid that a surface bounds, negative inside, in the voxels near it.
 
-    isoshell.level_set() makes one, and Result.level_set is one. isoshell.Volume takes it as its values.
+    isoshell.level_set() makes one, and Result.level_set is one. isoshell.Volume takes it as its values. It can be copied
+    and pickled.
 
     Attributes:
         voxel_size: world units.
@@ -82,6 +83,10 @@ class LevelSet:
             Error: of code UNWRITABLE_OUTPUT when it cannot be written, or is there and overwrite is not True.
         """
         self._made.save(path_text(path), grid, half is True, overwrite is True)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the arrays, which are made again."""
+        return {**self.__dict__, "_coordinates": None, "_values": None}
 
     def __len__(self) -> int:
         return self._made.voxels

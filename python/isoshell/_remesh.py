@@ -15,7 +15,7 @@ from ._level_set import LevelSet
 from ._keywords import PLACE, READING, Keywords, keywords_of
 from ._paths import path_text
 from ._result import Result, checked
-from ._sources import SourceLike, is_true_or_false, opened, sizing_of, source_of, with_faces
+from ._sources import SourceLike, are_files, is_true_or_false, opened, sizing_of, source_of, with_faces
 from ._usd import file_of, is_usd
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
 
     Args:
         source: a path that the command can read, or a stage of USD, perhaps with a prim in it, as
-            scene.usda:/World/Mesh (see isoshell.usd); (vertices, faces), arrays of (K, 3) numbers in world units and of
+            scene.usda:/World/Mesh (see isoshell.usd); a list of paths of level sets, which are regions, or with `union`
+            one surface; (vertices, faces), arrays of (K, 3) numbers in world units and of
             (M, 3) whole numbers, or faces of more corners; anything with .vertices and .faces, such as a mesh of
             trimesh, or with .points and .faces as a PolyData of pyvista; isoshell.Mesh, which has attributes;
             isoshell.Points; isoshell.Volume; isoshell.Labels, whose result has regions. Meshes, scenes and clouds of
@@ -161,7 +162,8 @@ def check_target(target: str, options: dict[str, Any], volumes: list[str], sourc
         raise Error(f"{', '.join(refused)}: not where output is {target}", stage="options")
     others = [(f"--{name.replace('_', '-')}", path_text(options[name])) for name in ("stats", "report", *STAGE_FILES)
               if options.get(name)]
-    inputs = [("INPUT", file_of(source))] if isinstance(source, (str, os.PathLike)) else []
+    files = [source] if isinstance(source, (str, os.PathLike)) else source if are_files(source) else []
+    inputs = [("INPUT", file_of(file)) for file in files]
     if not is_usd(target):
         from ._exchange import _files
 

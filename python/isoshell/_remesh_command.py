@@ -8,7 +8,7 @@ import logging
 import sys
 import time
 import warnings
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from ._errors import Error, RunWarning
 from ._exchange import format_of
@@ -29,9 +29,9 @@ SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help", "-V": "--version", 
 def names_ours(words: list[str]) -> bool:
     """Whether INPUT or OUTPUT is one, and nobody asks for the help."""
     places, options = split_words(words)
+    says_format = ["input_format"] * max(1, len(places) - 1) + ["output_format"]
     is_ours = any(name in options for name in OF_FILLING) or any(is_usd(place) for place in places) or any(
-        format_of(place) is not None and not options.get(option)
-        for place, option in zip(places, ("input_format", "output_format")))
+        format_of(place) is not None and not options.get(option) for place, option in zip(places, says_format))
     return is_ours and not {"help", "version"} & set(options)
 
 
@@ -75,7 +75,8 @@ def run(words: list[str]) -> int:
         warnings.simplefilter("ignore" if options.get("quiet") else "always", RunWarning)
         setattr(warnings, "showwarning", _show_warning)
         try:
-            if len(places) != 2 and not (options.get("dry_run") and len(places) == 1):
+            most = 2 if "frames" in options else len(places)
+            if not 2 <= len(places) <= most and not (options.get("dry_run") and len(places) == 1):
                 raise Error(f"{len(places)} names of files; give INPUT and OUTPUT", stage="command line")
             _check(places, options)
             if "frames" in options:
@@ -102,7 +103,7 @@ def _check(places: list[str], options: dict[str, Any]) -> None:
     if "fill" in options:
         if "frames" in options:
             raise Error("--fill is for one mesh; leave out --frames and name a frame", stage="command line")
-        check_target(options["fill"], bool(options.get("force")), [("OUTPUT", place) for place in places[1:2]])
+        check_target(options["fill"], bool(options.get("force")), [("OUTPUT", place) for place in places[1:][-1:]])
     elif "fill_mesher" in options:
         raise Error("--fill-mesher needs --fill FILE", stage="command line")
     if "fill_mesher" in options and options["fill_mesher"] not in MESHERS:
@@ -115,16 +116,17 @@ def _check(places: list[str], options: dict[str, Any]) -> None:
 def _run(places: list[str], options: dict[str, Any]) -> None:
     start = time.perf_counter()
     options.setdefault("progress", "auto")
+    source: Union[str, list[str]] = places[0] if len(places) <= 2 else places[:-1]
     to_fill, mesher = options.pop("fill", None), options.pop("fill_mesher", "tetgen")
     if options.pop("dry_run", False):
-        found = estimate(places[0], **options)
+        found = estimate(source, **options)
         _tell("estimate: " + ", ".join(f"{name} {value}" for name, value in found.items()))
         if options.get("stats") == "-":
             print(json.dumps({"schema": 1, "version": VERSION, "estimate": found}, indent=2))
         return
     result: Optional[Result] = None
     try:
-        result = remesh(places[0], output=places[1], **options)
+        result = remesh(source, output=places[-1], **options)
         if to_fill is not None:
             filled = result.fill(mesher)
             filled.save(to_fill, overwrite=bool(options.get("force")))
@@ -135,7 +137,7 @@ def _run(places: list[str], options: dict[str, Any]) -> None:
         raise
     finally:
         if result is not None and not options.get("quiet"):
-            _tell(f"{places[1]}: {_summary(result)}, {time.perf_counter() - start:.1f} s")
+            _tell(f"{places[-1]}: {_summary(result)}, {time.perf_counter() - start:.1f} s")
 
 
 def _run_frames(places: list[str], options: dict[str, Any]) -> int:

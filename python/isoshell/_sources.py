@@ -83,13 +83,19 @@ class ArrayLike(Protocol):
 
 
 SourceLike = Union[str, "os.PathLike[str]", Mesh, Points, Volume, Labels, MeshLike, PolyDataLike, SceneLike, CellsLike,
-                   ImageLike, ArrayLike, Tuple[Any, Any]]
+                   ImageLike, ArrayLike, Tuple[Any, Any], Sequence[Union[str, "os.PathLike[str]"]]]
 
 
 def opened(given: Any, options: Optional[dict[str, Any]] = None) -> Any:
     """Files that are read here and not by the library, and objects of other packages, as meshes, points, volumes and
     labels; anything else as it is. What of the options only this reading needs is taken out of them."""
     options = {} if options is None else options
+    if are_files(given):
+        others = [path_text(path) for path in given if is_usd(path) or format_of(path) is not None]
+        if others:
+            raise Error(f"{others[0]}: several files are read together where they are level sets, of .vdb and .nvdb; read "
+                        "this one alone")
+        return given
     if is_usd(given):
         from . import usd
 
@@ -101,12 +107,18 @@ def opened(given: Any, options: Optional[dict[str, Any]] = None) -> Any:
     return taken(given, options)
 
 
+def are_files(given: Any) -> bool:
+    """Whether it is several files, which are read together: level sets that become regions, or one surface."""
+    return isinstance(given, (list, tuple)) and len(given) > 0 and all(isinstance(path, (str, os.PathLike)) for path in given)
+
+
 def with_faces(source: Any, faces: Sequence[Any]) -> Any:
     """remesh(V, F) as remesh((V, F))."""
     if not faces:
         return source
     if len(faces) > 1 or isinstance(source, (str, os.PathLike)):
-        raise Error("by position there is one source, or vertices and faces: remesh(V, F); everything else is by name")
+        raise Error("by position there is one source, or vertices and faces: remesh(V, F); several files are a list, and "
+                    "everything else is by name")
     return source, faces[0]
 
 
@@ -150,7 +162,9 @@ def _vectors_of(velocities: Any, of_shape: Tuple[int, ...]) -> np.ndarray[Any, A
 
 def _source_of(given: Any) -> Source:
     if isinstance(given, (str, os.PathLike)):
-        return Source.file(path_text(given))
+        return Source.files([path_text(given)])
+    if are_files(given):
+        return Source.files([path_text(path) for path in given])
     if isinstance(given, Points):
         return Source.points(*_points_of(given))
     if is_sparse(given):

@@ -32,6 +32,7 @@ RequestFromPython request_from_python(const Source& source, const Keywords& keyw
       throw Error(ErrorCode::usage, "arguments", "--input-format is for files; leave it out");
     return requested;
   }
+  request.input.also = source.also;
   request.input = named_input(source.path, std::move(request.input));
   return requested;
 }

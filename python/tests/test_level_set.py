@@ -1,5 +1,6 @@
 """Level sets as sparse arrays, and sparse volumes as sources."""
 
+import copy
 import pickle
 import subprocess
 import sys
@@ -75,6 +76,39 @@ def test_the_level_set_of_the_result_is_around_its_triangles(ball, distances, tm
         isoshell.remesh(ball, stop_after="level-set", output=tmp_path / "none.vdb", level_set_of="result")
     with pytest.raises(isoshell.Error, match="level_set_of: not of a level set"):
         isoshell.level_set(ball, level_set_of="result")
+
+
+def test_a_level_set_can_be_copied_and_pickled(distances, tmp_path):
+    for again in (pickle.loads(pickle.dumps(distances)), copy.deepcopy(distances)):
+        assert np.array_equal(again.coordinates, distances.coordinates) and np.array_equal(again.values, distances.values)
+        assert again.background == distances.background and np.array_equal(again.transform, distances.transform)
+        again.save(tmp_path / "again.vdb", overwrite=True)
+        distances.save(tmp_path / "first.vdb", overwrite=True)
+        assert (tmp_path / "again.vdb").read_bytes() == (tmp_path / "first.vdb").read_bytes()
+    state = distances._made.__getstate__()
+    for wrong in (state[:4], (state[0][1:], *state[1:]), (*state[:3], state[3][4:], state[4]), (state[0], state[1][::-1], *state[2:])):
+        with pytest.raises(isoshell.Error):
+            type(distances._made).__new__(type(distances._made)).__setstate__(wrong)
+
+
+def test_several_files_are_regions_or_one_surface_as_inputs_of_the_command_are(distances, tmp_path):
+    shifted = isoshell.level_set(isoshell.Volume(distances), resolution=40)
+    files = [tmp_path / "one.vdb", tmp_path / "other.vdb"]
+    distances.save(files[0])
+    values = np.linalg.norm(moved_by(distances) - (0.4, 0, 0), axis=1) - 1
+    assert len(shifted) > 0 and len(values) == len(distances)
+    distances.save(files[1])
+    united = isoshell.remesh(files, union=True, **SMALL)
+    words = [*map(str, files), str(tmp_path / "out.ply"), "--union", "--vertices", "300", "--resolution", "40"]
+    assert subprocess.run([*COMMAND, *words], capture_output=True, timeout=FOREVER).returncode == 0
+    united.save(tmp_path / "united.ply")
+    assert (tmp_path / "united.ply").read_bytes() == (tmp_path / "out.ply").read_bytes()
+    assert united.report["input"]["also"] == [str(files[1])]
+    assert isoshell.estimate(files, union=True, **SMALL)["sites"] > 0
+    with pytest.raises(isoshell.Error, match="several files are read together"):
+        isoshell.remesh([files[0], tmp_path / "scene.usda"], **SMALL)
+    with pytest.raises(isoshell.Error, match="is given twice"):
+        isoshell.remesh([files[0], files[0]], **SMALL)
 
 
 def test_as_an_array_it_has_a_sign_everywhere(distances):

@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "isoshell/advanced/each_voxel.h"
+#include "isoshell/advanced/voxel_set_of_leaves.h"
 #include "isoshell/error.h"
 #include "isoshell/io/vdb_file.h"
 #include "values/arrays.h"
+#include "values/packed.h"
 #include "values/text.h"
 #include "vdb_isomesh/memory.h"
 
@@ -117,6 +119,39 @@ void save(const MadeLevelSet& made, const std::string& path, const std::string& 
   save_level_set(path, *made.set, {grid, half, overwrite});
 }
 
+constexpr char kType[] = "isoshell.LevelSet";
+
+template <class T>
+Buffer<T> buffer_of(nb::handle state) {
+  const std::vector<T> values = unpacked<T>(state, kType);
+  Buffer<T> buffer(int64_t(values.size()));
+  std::copy(values.begin(), values.end(), buffer.begin());
+  return buffer;
+}
+
+nb::tuple state_of(const MadeLevelSet& made) {
+  const LevelSet& set = *made.set;
+  return nb::make_tuple(packed(&set.frame, 1), packed(set.voxels.leaf_key), packed(set.voxels.mask),
+                        packed(set.distance_vox), set.band_vox);
+}
+
+MadeLevelSet level_set_of_state(const nb::tuple& s) {
+  try {
+    if (s.size() != 5) refuse_state(kType);
+    LevelSet set;
+    const std::vector<LatticeFrame> frame = unpacked<LatticeFrame>(s[0], kType);
+    if (frame.size() != 1) refuse_state(kType);
+    set.frame = frame[0];
+    set.voxels = voxel_set_of_leaves(buffer_of<uint64_t>(s[1]), buffer_of<LeafMask>(s[2]), set.frame.extent_vox);
+    set.distance_vox = buffer_of<float>(s[3]);
+    set.band_vox = nb::cast<double>(s[4]);
+    if (set.distance_vox.size() != set.voxels.voxel_count()) refuse_state(kType);
+    return {std::make_shared<const LevelSet>(std::move(set))};
+  } catch (const nb::cast_error&) {
+    refuse_state(kType);
+  }
+}
+
 }  // namespace
 
 void bind_level_set(nb::module_& m) {
@@ -126,6 +161,11 @@ void bind_level_set(nb::module_& m) {
       .def("dense", dense, nb::arg("max_bytes"), nb::sig("def dense(self, max_bytes: int) -> typing.Any"))
       .def("save", save, nb::arg("path"), nb::arg("grid"), nb::arg("half"), nb::arg("overwrite"),
            nb::call_guard<nb::gil_scoped_release>())
+      .def("__getstate__", state_of, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
+      .def(
+          "__setstate__",
+          [](MadeLevelSet& made, const nb::tuple& state) { new (&made) MadeLevelSet(level_set_of_state(state)); },
+          nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"))
       .def_prop_ro("voxels", [](const MadeLevelSet& made) { return made.set->voxels.voxel_count(); })
       .def_prop_ro("voxel_size", [](const MadeLevelSet& made) { return made.set->frame.voxel_size; })
       .def_prop_ro("background", [](const MadeLevelSet& made) { return double(background_of(*made.set)); })

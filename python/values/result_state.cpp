@@ -3,13 +3,11 @@
 #include <nanobind/stl/vector.h>
 
 #include <array>
-#include <cstring>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "isoshell/error.h"
+#include "values/packed.h"
 #include "values/text.h"
 
 namespace nb = nanobind;
@@ -19,24 +17,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-[[noreturn]] void refuse() {
-  throw Error(ErrorCode::usage, "arguments", "this is no pickled isoshell.Result of this version");
-}
-
-template <class T>
-nb::bytes packed(const std::vector<T>& values) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  return nb::bytes(static_cast<const void*>(values.data()), values.size() * sizeof(T));
-}
-
-template <class T>
-std::vector<T> unpacked(nb::handle state) {
-  const auto bytes = nb::cast<nb::bytes>(state);
-  if (bytes.size() % sizeof(T) != 0) refuse();
-  std::vector<T> values(bytes.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), bytes.c_str(), bytes.size());
-  return values;
-}
+[[noreturn]] void refuse() { refuse_state("isoshell.Result"); }
 
 nb::tuple part(const nb::tuple& state, size_t i, size_t size) {
   auto found = nb::cast<nb::tuple>(state[i]);

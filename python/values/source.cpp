@@ -49,14 +49,13 @@ void refuse_volume_options(const RunRequest& request) {
   refuse_label_options(request);
 }
 
-/// Of what is in memory.
-void refuse_options_of_several(const RunRequest& request) {
-  if (request.input.unite || !request.input.reference.empty())
-    refuse(std::string(request.input.unite ? "--union" : "--reference") +
-           " is for several level sets, which are grids of files; name them as FILE.vdb:*");
+/// The first one, and those that are read with it.
+Source files(const std::vector<std::string>& paths) {
+  if (paths.empty()) refuse("a list of files as a source must have one");
+  Source source{paths[0], {}, {}, {}};
+  source.also.assign(paths.begin() + 1, paths.end());
+  return source;
 }
-
-Source file(const std::string& path) { return {path, {}, {}, {}}; }
 
 Source surface(const std::string& name, TriangleSoup soup) {
   const auto given = std::make_shared<TriangleSoup>(std::move(soup));
@@ -236,10 +235,12 @@ void set_dropped(Source& source, const std::vector<std::pair<std::string, std::s
   for (const auto& [name, reason] : dropped) surface_in(source).dropped_attributes.push_back({name, reason});
 }
 
-/// A file is pickled as its name; what is in memory is not.
-std::string state_of(const Source& source) {
+/// Files are pickled as their names; what is in memory is not.
+std::vector<std::string> state_of(const Source& source) {
   if (!source.is_file()) refuse("a source in memory cannot be pickled");
-  return source.path;
+  std::vector<std::string> paths{source.path};
+  paths.insert(paths.end(), source.also.begin(), source.also.end());
+  return paths;
 }
 
 }  // namespace
@@ -250,10 +251,7 @@ Input input_of_run(const ReadMemory& read, const RunRequest& request, const Cont
 
 RunResult run_from(const ReadMemory& read, const RunRequest& request, Context& context) {
   RunSteps steps(request);
-  if (read) {
-    refuse_options_of_several(request);
-    steps.read(context, [&] { return read(request, context); });
-  }
+  if (read) steps.read(context, [&] { return read(request, context); });
   return steps.finish(context);
 }
 
@@ -261,7 +259,7 @@ void bind_source(nb::module_& m) {
   bind_given_grid(m);
   nb::class_<Source>(m, "Source", "What one run starts from.")
       .def_prop_ro("is_file", &Source::is_file)
-      .def_static("file", file, nb::arg("path"))
+      .def_static("files", files, nb::arg("paths"))
       .def_static("triangles", triangles, nb::arg("name"), nb::arg("vertices"), nb::arg("faces"), nb::arg("attributes"),
                   nb::arg("regions_of").none(),
                   nb::sig("def triangles(name: str, vertices: typing.Any, faces: typing.Any, attributes: "
@@ -304,7 +302,8 @@ void bind_source(nb::module_& m) {
            nb::sig("def set_regions(self, labels: typing.Any, background: int, names: dict[int, str]) -> None"))
       .def("set_dropped", set_dropped, nb::arg("dropped"))
       .def("__getstate__", state_of)
-      .def("__setstate__", [](Source& source, const std::string& path) { new (&source) Source(file(path)); })
+      .def("__setstate__",
+           [](Source& source, const std::vector<std::string>& paths) { new (&source) Source(files(paths)); })
       .def("set_velocities", set_velocities, nb::arg("vectors"), nb::arg("origin"), nb::arg("steps"),
            nb::sig("def set_velocities(self, vectors: typing.Any, origin: collections.abc.Sequence[float], steps: "
                    "collections.abc.Sequence[collections.abc.Sequence[float]]) -> None"));

@@ -25,6 +25,7 @@ struct Source {
   std::function<std::shared_ptr<const VelocityField>()> velocity = {};
 
   std::shared_ptr<TriangleSoup> surface = {};                ///< of a mesh in memory, until a run takes it
+  std::vector<std::string> also = {};                        ///< of level sets more files, beside that of the path
   std::vector<std::shared_ptr<const GridField>> grids = {};  ///< whose values vertices of the result get
 
   bool is_file() const { return !read; }

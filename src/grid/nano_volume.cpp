@@ -166,6 +166,7 @@ NanoHead nano_head_of(View<const std::byte> grid) {
   head.name.assign(data.mGridName, strnlen(data.mGridName, sizeof data.mGridName));
   head.grid_type = uint32_t(data.mGridType);
   head.grid_class = uint32_t(data.mGridClass);
+  head.grid_bytes = data.mGridSize;
   return head;
 }
 

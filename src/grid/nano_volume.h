@@ -45,7 +45,8 @@ NanoKind nano_kind(uint32_t grid_type, uint32_t grid_class);
 struct NanoHead {
   std::string name;
   uint32_t grid_type = 0, grid_class = 0;  ///< as nano_kind() takes them
-  std::string fault;                       ///< why these bytes are no grid of a layout that is read; empty: they are
+  uint64_t grid_bytes = 0;
+  std::string fault;  ///< why these bytes are no grid of a layout that is read; empty: they are
 };
 NanoHead nano_head_of(View<const std::byte> grid);
 

@@ -69,17 +69,6 @@ std::vector<std::string> own_grids(const std::vector<std::string>& names) {
 
 [[noreturn]] void refuse_iso() { refuse_use("--iso is for volumes; leave it out"); }
 
-void check_several(const InputRequest& request) {
-  const bool is_for_several = is_for_level_sets(request);
-  if (!is_for_several && (request.unite || !request.reference.empty()))
-    refuse_use(std::string(request.unite ? "--union" : "--reference") +
-               " is for several level sets; name them as FILE.vdb:*, or more files as INPUT");
-  if (request.unite && !request.reference.empty()) refuse_use("--reference is for regions; leave it out, or --union");
-  const auto& grids = request.grids;
-  if (is_for_several && std::find(grids.begin(), grids.end(), kAllGrids) != grids.end())
-    refuse_use("--grids all would be the level sets, too; name the grids whose values are wanted");
-}
-
 void check_no_labels(const LabelReading& labels) {
   if (const char* const option = labels.given())
     refuse_use(std::string(option) + " is for volumes of labels; leave it out");
@@ -91,6 +80,17 @@ VolumeReadOptions options_of(const InputRequest& request, const Context& context
 }
 
 }  // namespace
+
+void check_several(const InputRequest& request) {
+  const bool is_for_several = is_for_level_sets(request);
+  if (!is_for_several && (request.unite || !request.reference.empty()))
+    refuse_use(std::string(request.unite ? "--union" : "--reference") +
+               " is for several level sets; name them as FILE.vdb:*, or more files as INPUT");
+  if (request.unite && !request.reference.empty()) refuse_use("--reference is for regions; leave it out, or --union");
+  const auto& grids = request.grids;
+  if (is_for_several && std::find(grids.begin(), grids.end(), kAllGrids) != grids.end())
+    refuse_use("--grids all would be the level sets, too; name the grids whose values are wanted");
+}
 
 InputReader::InputReader(const std::string& path, const Context& context, const Tell& tell)
     : context_(context), tell_(tell) {
@@ -267,6 +267,9 @@ void InputReader::read_level_set(const MeshSource& source, const InputRequest& r
 
 void InputReader::read_several(const MeshSource& source, const InputRequest& request) {
   if (request.iso) refuse_use("--iso is for one volume; several level sets are meshed where their values are 0");
+  std::optional<Input> reference;  // read first: what is wrong with it is said before the long work
+  if (!request.reference.empty()) reference = read_input(named_input(request.reference), context_, tell_);
+  input_.facts.also = request.also;
   std::vector<std::unique_ptr<MeshSource>> others;
   std::vector<LevelSetFile> files{{&source, request.grid}};
   for (const std::string& name : request.also) {
@@ -290,10 +293,9 @@ void InputReader::read_several(const MeshSource& source, const InputRequest& req
   if (request.labels.smallest_island_vox) labels.smallest_island_vox = *request.labels.smallest_island_vox;
   const LabelVolume lattice{labels.size_vox, {}, labels.origin_world, labels.step_world};
   std::vector<WallCrossing> crossings;
-  hold(std::move(labels), origin, request.reference.empty() ? nullptr : &crossings);
-  if (request.reference.empty()) return;
-  const Input reference = read_input(named_input(request.reference), context_, tell_);
-  const double off_vox = mark_faces_on_reference(reference.soup, request.reference, crossings, lattice, input_.soup);
+  hold(std::move(labels), origin, reference ? &crossings : nullptr);
+  if (!reference) return;
+  const double off_vox = mark_faces_on_reference(reference->soup, request.reference, crossings, lattice, input_.soup);
   if (off_vox > 0)
     warn("no face lies on the reference " + request.reference + ", so all are inner: the nearest is " +
          readable_length(off_vox) +

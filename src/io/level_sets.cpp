@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "core/file_format.h"
@@ -20,28 +21,40 @@ constexpr char kLevelSet[] = "level set";
 
 bool is_pattern(const std::string& name) { return name.find_first_of("*?") != std::string::npos; }
 
-/// What a file that is no .vdb file needs to be one.
-void check_is_vdb(const MeshSource& source) {
-  const auto refuse = [&](const std::string& remedy) {
-    throw Error(ErrorCode::usage, "read", source.name() + ": several level sets are read of .vdb files; " + remedy);
-  };
-  if (is_nano_file(source)) refuse("convert it by OpenVDB's nanovdb_convert FILE.nvdb FILE.vdb");
+void check_is_volume(const MeshSource& source) {
   const FileFormat* const format = find_format(format_of_path(source.name()));
   if (format && !format->reads_volume)
-    refuse("this is none by its name; parts of one mesh become regions by --regions, and one mesh is meshed alone");
+    throw Error(ErrorCode::usage, "read",
+                source.name() +
+                    ": several level sets are read of .vdb and .nvdb files; this is none by its name; parts of one "
+                    "mesh become regions by --regions, and one mesh is meshed alone");
+}
+
+std::vector<VolumeGrid> grids_in(const MeshSource& source) {
+  if (is_nano_file(source)) return nano_grids(source);
+  std::vector<VolumeGrid> grids;
+  const VdbLayout layout = read_vdb_layout(source.name(), {source.begin(), source.size()});
+  for (const VdbGridSpan& span : layout.grids) grids.push_back(as_volume(span));
+  return grids;
+}
+
+/// The name, apart from all others, of the one that is named, or of the only one.
+std::string one_of(const MeshSource& source, const std::string& grid) {
+  if (!is_nano_file(source)) return meshed_grid(source, grid);
+  const std::vector<VolumeGrid> grids = nano_grids(source);
+  VolumeReadOptions options;
+  options.grid = grid;
+  return with_names_apart(grids)[choose_grid(source.name(), grids, options)].name;
 }
 
 /// Names apart from all others of the grids that a file is asked for.
 std::vector<std::string> grids_of(const LevelSetFile& file, std::vector<std::string>& warnings) {
   const MeshSource& source = *file.source;
-  check_is_vdb(source);
-  if (!is_pattern(file.grid)) return {meshed_grid(source, file.grid)};
-  const VdbLayout layout = read_vdb_layout(source.name(), {source.begin(), source.size()});
-  std::vector<VolumeGrid> grids;
-  for (const VdbGridSpan& span : layout.grids) grids.push_back(as_volume(span));
+  check_is_volume(source);
+  if (!is_pattern(file.grid)) return {one_of(source, file.grid)};
   std::vector<std::string> found;
   std::string all, left_out;
-  for (const VolumeGrid& grid : with_names_apart(grids)) {
+  for (const VolumeGrid& grid : with_names_apart(grids_in(source))) {
     all += (all.empty() ? "" : ", ") + grid.text();
     if (!fits(grid.name, file.grid)) continue;
     if (grid.grid_class == kLevelSet && !grid.flaw.empty())
@@ -64,7 +77,9 @@ std::vector<std::string> grids_of(const LevelSetFile& file, std::vector<std::str
 }
 
 std::unique_ptr<ScalarField> read_level_set(const MeshSource& source, const std::string& grid, int64_t limit_bytes) {
-  std::unique_ptr<ScalarField> field = read_vdb_volume(source, {grid, {}, limit_bytes});
+  const VolumeReadOptions options{grid, {}, limit_bytes};
+  std::unique_ptr<ScalarField> field =
+      is_nano_file(source) ? read_nano_volume(source, options) : read_vdb_volume(source, options);
   field->file = source.name();
   if (field->grid_class != kLevelSet)
     throw Error(ErrorCode::usage, "read",
@@ -83,6 +98,32 @@ void add_grid(const MeshSource& source, const std::string& grid, int64_t memory_
                 error.what() + ("; this is what is left beside " + counted(int64_t(sets.blocks.size()), "level set")) +
                     " read before it, which take " + readable_bytes(sets.bytes()));
   }
+}
+
+struct NamedGrid {
+  const MeshSource* source;
+  std::string name;
+};
+
+/// The names of grids; where those are the same FILE:GRID, and where files have one name in two folders their paths.
+std::vector<std::string> names_apart(const std::vector<NamedGrid>& grids) {
+  const auto named = [&](size_t length, const NamedGrid& grid) {
+    if (length == 0) return grid.name;
+    const std::string& path = grid.source->name();
+    return (length == 1 ? std::filesystem::path(path).stem().string() : path) + ":" + grid.name;
+  };
+  std::vector<size_t> length(grids.size(), 0);
+  std::vector<std::string> names(grids.size());
+  for (int round = 0; round < 3; ++round) {
+    std::map<std::string, int> uses;
+    for (size_t i = 0; i < grids.size(); ++i) ++uses[names[i] = named(length[i], grids[i])];
+    for (size_t i = 0; i < grids.size(); ++i) length[i] += uses[names[i]] > 1 ? 1 : 0;
+  }
+  const auto twice = std::find(length.begin(), length.end(), size_t(3));
+  if (twice != length.end())
+    throw Error(ErrorCode::usage, "read",
+                names[size_t(twice - length.begin())] + " is given twice; leave one of them out");
+  return names;
 }
 
 }  // namespace
@@ -109,15 +150,12 @@ bool fits(const std::string& name, const std::string& pattern) {
 
 LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory_limit_bytes) {
   LevelSets sets;
-  std::vector<std::string> stems;
+  std::vector<NamedGrid> grids;
   for (const LevelSetFile& file : files)
-    for (const std::string& grid : grids_of(file, sets.warnings)) {
-      add_grid(*file.source, grid, memory_limit_bytes, sets);
-      stems.push_back(std::filesystem::path(file.source->name()).stem().string());
-    }
-  const std::vector<std::string> names = sets.names;
-  for (size_t i = 0; i < names.size(); ++i)
-    if (std::count(names.begin(), names.end(), names[i]) > 1) sets.names[i] = stems[i] + ":" + names[i];
+    for (const std::string& grid : grids_of(file, sets.warnings)) grids.push_back({file.source, grid});
+  const std::vector<std::string> names = names_apart(grids);  // refuses those that are given twice
+  for (const NamedGrid& grid : grids) add_grid(*grid.source, grid.name, memory_limit_bytes, sets);
+  sets.names = names;
   return sets;
 }
 

@@ -1,4 +1,4 @@
-// Several level sets of .vdb files.
+// Several level sets of .vdb and .nvdb files.
 #pragma once
 
 #include "implicit/level_sets/level_sets.h"
@@ -20,10 +20,10 @@ struct LevelSetFile {
 };
 
 /// Reads the level sets that the files name, in their order, and those of a pattern by their names. A region has the
-/// name of its grid, or FILE:GRID where that of another one is the same. Each is held as blocks
-/// before the next one is read. They need the bytes of the files. Throws:
-/// usage where a pattern fits no level set, or one with
-/// a flaw, and for files of other formats; out_of_memory over the limit; and as read_vdb_volume() and add_level_set()
+/// name of its grid, or FILE:GRID where that of another one is the same, with the path of the file where files have one
+/// name in two folders. Each is held as blocks before the next one is read. They need the bytes of the files. Throws:
+/// usage where a pattern fits no level set, or one with a flaw, for a grid that is given twice, and for files of other
+/// formats; out_of_memory over the limit; and as read_vdb_volume() and add_level_set()
 /// do.
 LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory_limit_bytes);
 

@@ -118,7 +118,10 @@ std::shared_ptr<const GridField> grid_field(const MemoryGrid& grid, const std::s
 Input input_of_vdb(View<const char> bytes, const std::string& name, const InputRequest& request, const Context& context,
                    const Tell& tell) {
   InputReader reader(name, context, tell);
-  reader.read(MeshSource(name, bytes), request);
+  if (const std::shared_ptr<const HeldGrid> grid = copied_nano_grid(bytes))
+    reader.hold(*grid, request);
+  else
+    reader.read(MeshSource(name, bytes), request);
   return reader.taken();
 }
 

@@ -170,8 +170,9 @@ std::unique_ptr<GridBytes> unpack(const MeshSource& source, const NanoGridSpan& 
 /// A grid whose bytes are another's.
 class HeldNanoGrid final : public HeldGrid {
  public:
-  HeldNanoGrid(const VolumeGrid& volume, const VolumeGrid& labels, View<const std::byte> bytes)
-      : HeldGrid(volume, labels), bytes_(bytes) {}
+  /// Of a grid in bytes that lie where it keeps them, or outlive it.
+  HeldNanoGrid(const NanoHead& head, View<const std::byte> bytes, std::unique_ptr<GridBytes> owned)
+      : HeldGrid(as_volume(head), as_labels(head)), owned_(std::move(owned)), bytes_(bytes) {}
   std::unique_ptr<ScalarField> field() const override {
     auto field = std::make_unique<NanoField>(volume(), bytes_, nullptr);
     if (!field->fault().empty()) refuse_nano("grid \"" + volume().name + "\": " + field->fault());
@@ -184,16 +185,32 @@ class HeldNanoGrid final : public HeldGrid {
   }
 
  private:
+  static VolumeGrid as_volume(const NanoHead& head) {
+    return about_nano(head.name, nano_kind(head.grid_type, head.grid_class));
+  }
+  static VolumeGrid as_labels(const NanoHead& head) {
+    VolumeGrid grid = as_volume(head);
+    grid.flaw = "holds no labels that are read; save them in a grid of OpenVDB";
+    return grid;
+  }
+
+  const std::unique_ptr<GridBytes> owned_;
   const View<const std::byte> bytes_;
 };
 
+std::vector<VolumeGrid> grids_of(const std::vector<NanoGridSpan>& spans) {
+  std::vector<VolumeGrid> grids;
+  for (const NanoGridSpan& span : spans) grids.push_back(span.grid);
+  return grids;
+}
+
 }  // namespace
+
+std::vector<VolumeGrid> nano_grids(const MeshSource& source) { return grids_of(read_index(source)); }
 
 std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const VolumeReadOptions& options) {
   const std::vector<NanoGridSpan> spans = read_index(source);
-  std::vector<VolumeGrid> grids;
-  for (const NanoGridSpan& span : spans) grids.push_back(span.grid);
-  const NanoGridSpan& span = spans[choose_grid(source.name(), grids, options)];
+  const NanoGridSpan& span = spans[choose_grid(source.name(), grids_of(spans), options)];
   const int64_t most = span.codec == Codec::none ? span.file_bytes : span.file_bytes * kBestZipRatio;
   if (span.grid_bytes < kGridHeadBytes || span.grid_bytes > most)
     throw_unreadable_vdb(source.name(), "grid \"" + span.grid.name + "\" says that its " +
@@ -214,10 +231,18 @@ MemoryGrid nano_grid(View<const std::byte> bytes) {
                 "; copy them to where they do");
   const NanoHead head = nano_head_of(bytes);
   if (!head.fault.empty()) refuse_nano(head.fault);
-  const VolumeGrid volume = about_nano(head.name, nano_kind(head.grid_type, head.grid_class));
-  VolumeGrid labels = volume;
-  labels.flaw = "holds no labels that are read; save them in a grid of OpenVDB";
-  return MemoryGrid(std::make_shared<HeldNanoGrid>(volume, labels, bytes));
+  return MemoryGrid(std::make_shared<HeldNanoGrid>(head, bytes, nullptr));
+}
+
+std::shared_ptr<const HeldGrid> copied_nano_grid(View<const char> bytes) {
+  const NanoHead head = nano_head_of({reinterpret_cast<const std::byte*>(bytes.data), bytes.size});
+  const bool is_grid = head.fault.empty() && head.grid_bytes >= uint64_t(kGridHeadBytes) &&
+                       head.grid_bytes <= uint64_t(bytes.size);  // of a file a hash of the grid's name is here
+  if (!is_grid) return nullptr;
+  auto copy = std::make_unique<GridBytes>(bytes.size);
+  std::memcpy(copy->view().data, bytes.data, size_t(bytes.size));
+  const View<const std::byte> grid = copy->grid();
+  return std::make_shared<HeldNanoGrid>(head, grid, std::move(copy));
 }
 
 }  // namespace isoshell

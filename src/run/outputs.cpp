@@ -200,6 +200,7 @@ void check_request(const RunRequest& r) {
 }
 
 void check_outputs(const RunRequest& r) {
+  check_several(r.input);
   if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty() ||
                            !r.level_set.path.empty()))
     refuse(

@@ -23,7 +23,7 @@ std::vector<NamedFile> inputs_of(const RunRequest& request);
 std::string file_of_sizing(const std::string& sizing);
 
 /// Every file that the run would write can be (see check_output_files). Throws: also unwritable_output when this build
-/// cannot write its format.
+/// cannot write its format; and as check_several(), before a file is written.
 void check_outputs(const RunRequest& request);
 
 /// A region's own file.

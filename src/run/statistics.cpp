@@ -76,6 +76,7 @@ Json options_of_schema(const RunOptions& options) {
 Json input_json(const RunRecord& r) {
   const InputTopology& t = r.report.input.topology;
   return {{"path", r.input.path},
+          {"also", r.input.also},
           {"kind", kind_name(r.input.kind)},
           {"vertices", known(r.input.vertices)},
           {"faces", known(r.input.faces)},

@@ -43,6 +43,11 @@ TEST_CASE("args: several volumes are INPUTs, and the last word is OUTPUT", "[cli
   CHECK(named.run.output.path == "out.ply");
   CHECK(parse({"a.vdb", "b.vdb", "-o", "out.ply"}).run->run.input.also == std::vector<std::string>{"b.vdb"});
   CHECK(contains(refusal({"a.vdb", "b.ply", "-o", "out.ply"}), "OUTPUT is given twice"));
+  const Arguments dry = *parse({"a.vdb", "b.vdb", "--dry-run"}).run;
+  CHECK(dry.run.input.also == std::vector<std::string>{"b.vdb"});
+  CHECK(dry.run.output.path.empty());
+  CHECK(parse({"a.vdb", "b.vdb", "c.ply", "--dry-run"}).run->run.output.path == "c.ply");
+  CHECK(parse({"a.vdb", "b.vdb", "--dry-run", "--stop-after", "shell"}).run->run.output.path == "b.vdb");
   CHECK(arguments({"--reference", "scan.obj"}).run.input.reference == "scan.obj");
   CHECK(contains(refusal({"a.obj", "b.obj", "out.ply"}), "one argument too many: 'out.ply'"));
   CHECK(contains(refusal({"a.vdb", "b.vdb", "out.ply", "--frames", "1-2"}), "--frames takes one INPUT"));

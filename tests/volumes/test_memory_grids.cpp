@@ -321,6 +321,36 @@ TEST_CASE("memory grid: a level set goes out to NanoVDB and comes back", "[memor
   CHECK(run_the_same(read_grid(handle), folder / "set.vdb"));
 }
 
+TEST_CASE("memory grid: the bytes of a grid of NanoVDB are a source wherever they begin", "[memory_grid]") {
+  const auto handle = nanovdb::openToNanoVDB(*ball());
+  const auto* const begin = reinterpret_cast<const char*>(handle.data());
+  std::vector<char> shifted(1, ' ');
+  shifted.insert(shifted.end(), begin, begin + handle.size());
+  const Context context;
+  const Input input = input_of_vdb({shifted.data() + 1, int64_t(handle.size())}, "mine", {}, context);
+  CHECK(input.soup.vertices.size() == input_of(read_grid(handle), "mine", {}, context).soup.vertices.size());
+}
+
+TEST_CASE("memory grid: several level sets of a file of NanoVDB are those of a file of OpenVDB", "[regions][vdb]") {
+  const TemporaryFolder folder;
+  const auto other = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(5.f, openvdb::Vec3f(12, -4, 5), .5f, 3.f);
+  other->setName("ball2");
+  const openvdb::FloatGrid::Ptr mine = ball();
+  openvdb::io::File(folder / "balls.vdb").write({mine, other, fog()});
+  std::vector<nanovdb::GridHandle<nanovdb::HostBuffer>> handles;
+  handles.push_back(nanovdb::openToNanoVDB(*other));
+  handles.push_back(nanovdb::openToNanoVDB(*mine));
+  handles.push_back(nanovdb::openToNanoVDB(*fog()));
+  nanovdb::io::writeGrids(folder / "balls.nvdb", handles);
+  const Input of_vdb = read_input(named_input(folder / "balls.vdb:ball*"), 0),
+              of_nano = read_input(named_input(folder / "balls.nvdb:ball*"), 0);
+  REQUIRE(of_nano.soup.regions.names.size() == 2);
+  CHECK(of_nano.soup.regions.names[1].name == "ball2");
+  CHECK(of_nano.soup.triangles == of_vdb.soup.triangles);
+  const std::string words = message_of(ErrorCode::usage, [&] { read_input(named_input(folder / "balls.nvdb:x*"), 0); });
+  CHECK(contains(words, "no level set has a name like \"x*\""));
+}
+
 TEST_CASE("memory grid: bytes of NanoVDB that are no such grid are refused", "[memory_grid]") {
   const auto handle = nanovdb::openToNanoVDB(*ball());
   const auto* const begin = reinterpret_cast<const std::byte*>(handle.data());

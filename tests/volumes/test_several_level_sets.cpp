@@ -1,4 +1,5 @@
 // Several level sets of .vdb files: which are read, and what is refused.
+#include <filesystem>
 #include <fstream>
 
 #include "io/level_sets.h"
@@ -41,6 +42,42 @@ TEST_CASE("level sets: those of several files are regions, by the names of grids
   CHECK(says(error_of([&] { read(request); }), "holds several grids, name one as"));
 }
 
+TEST_CASE("level sets: files of one name in two folders are told apart, and no grid is given twice", "[regions][vdb]") {
+  const TemporaryFile one("folder1"), other("folder2");
+  const std::string paths[2] = {one.path + "/piece.vdb", other.path + "/piece.vdb"};
+  for (const std::string& folder : {one.path, other.path}) std::filesystem::create_directory(folder);
+  write(paths[0], {level_set("surface", ball(-.3, .4))});
+  write(paths[1], {level_set("surface", ball(.3, .4)), level_set("more", ball(.3, .1))});
+  InputRequest request = request_for(paths[0]);
+  request.also = {paths[1] + ":surface"};
+  const Input input = read(request);
+  REQUIRE(input.soup.regions.names.size() == 2);
+  for (size_t i = 0; i < 2; ++i) CHECK(input.soup.regions.names[i].name == paths[i] + ":surface");
+  CHECK(input.facts.also == request.also);
+  request.also = {paths[0]};
+  CHECK(says(error_of([&] { read(request); }), "piece.vdb:surface is given twice; leave one of them out"));
+  for (const std::string& folder : {one.path, other.path}) std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("level sets: a reference that cannot be read is refused before they are", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb"), damaged("damaged.vdb");
+  write(file.path, {level_set("a", ball(-.3, .4)), level_set("b", ball(.3, .4))});
+  std::ofstream(damaged.path, std::ios::binary) << "no grid of any kind";
+  const auto told_before = [&](const std::string& reference, const std::string& words) {
+    InputRequest request = request_for(file.path + ":*");
+    request.reference = reference;
+    bool has_read = false;
+    const Error error = error_of([&] {
+      read_input(request, 0, [&](MessageKind, const std::string& text) { has_read |= contains(text, "level sets"); });
+    });
+    CHECK(says(error, words));
+    CHECK_FALSE(has_read);
+  };
+  told_before("none.ply", "none.ply: no such file");
+  told_before(damaged.path, "damaged.vdb");
+  told_before("none.txt", "none.txt");
+}
+
 TEST_CASE("level sets: other transforms, other classes and names that nothing has are refused", "[regions][vdb]") {
   const TemporaryFile file("pieces.vdb");
   const auto refusal = [&](const openvdb::GridPtrVec& grids, const std::string& pattern) {
@@ -58,9 +95,9 @@ TEST_CASE("level sets: other transforms, other classes and names that nothing ha
   CHECK(says(error_of([&] { read(request); }), "--background is for volumes of labels"));
   auto fog = level_set("a", ball(0, .5));
   fog->setGridClass(openvdb::GRID_FOG_VOLUME);
-  write(file.path, {fog});
-  request = request_for(file.path);
-  request.also = {file.path};
+  write(file.path, {fog, level_set("b", ball(.2, .5))});
+  request = request_for(file.path + ":a");
+  request.also = {file.path + ":b"};
   CHECK(says(error_of([&] { read(request); }), "where all of them are level sets"));
 }
 
@@ -89,10 +126,10 @@ TEST_CASE("level sets: files of other formats are refused with a remedy", "[regi
     if (!also.empty()) request.also = {also};
     return error_of([&] { read(request); });
   };
-  CHECK(says(refusal(file.path, mesh.path), "are read of .vdb files; this is none by its name"));
-  CHECK(says(refusal(mesh.path, file.path), "are read of .vdb files; this is none by its name"));
-  CHECK(says(refusal(packed.path + ":*", ""), "are read of .vdb files; convert it"));
-  CHECK(says(refusal(file.path, packed.path), "are read of .vdb files; convert it"));
+  CHECK(says(refusal(file.path, mesh.path), "are read of .vdb and .nvdb files; this is none by"));
+  CHECK(says(refusal(mesh.path, file.path), "are read of .vdb and .nvdb files; this is none by"));
+  CHECK(says(refusal(packed.path + ":*", ""), "packed.nvdb"));  // it is damaged
+  CHECK(says(refusal(file.path, packed.path), "packed.nvdb"));
 }
 
 TEST_CASE("level sets: one that holds its band alone is refused with a remedy, one that was clipped is not",

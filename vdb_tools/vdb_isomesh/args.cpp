@@ -69,13 +69,13 @@ class Parser {
   std::vector<std::string> also() const {
     std::vector<std::string> words = app_.remaining();
     if (!output_.empty()) words.insert(words.begin(), output_);
-    if (texts_.at("output").empty() && !words.empty()) words.pop_back();
+    if (texts_.at("output").empty() && !words.empty() && !has_inputs_alone()) words.pop_back();
     return words;
   }
   /// Throws: usage.
-  const std::string& output() const {
+  std::string output() const {
     const std::string& named = texts_.at("output");
-    if (named.empty()) return last_.empty() ? output_ : last_;
+    if (named.empty()) return has_inputs_alone() ? "" : last_.empty() ? output_ : last_;
     if (!output_.empty() && !(is_volume(input_) && is_volume(output_)))
       refuse("OUTPUT is given twice, as '" + output_ + "' and as --output '" + named + "'; leave one out");
     return named;
@@ -94,6 +94,13 @@ class Parser {
   }
 
  private:
+  /// Where nothing is written, the last word need not be OUTPUT; a volume is none of a run to a mesh.
+  bool has_inputs_alone() const {
+    const std::string& last = last_.empty() ? output_ : last_;
+    return flags_.at("dry-run") && texts_.at("stop-after").empty() && !last.empty() && is_volume(input_) &&
+           is_volume(last);
+  }
+
   void add(const CommandOption& option) {
     const OptionEntry& entry = option.entry;
     const std::string names = (option.short_name.empty() ? "" : "-" + option.short_name + ",") + "--" + entry.name;

@@ -73,9 +73,14 @@ InputRequest named_input(const std::string& name, const std::string& format = ""
 /// The same with what `request` says of how it is read. Throws: as the other does.
 InputRequest named_input(const std::string& name, InputRequest request);
 
+/// Throws: usage where the request asks for what several level sets alone have, and is not for them, or for what these
+/// do not have together.
+void check_several(const InputRequest& request);
+
 /// What is known of an input before the first stage.
 struct InputFacts {
-  std::string path;  ///< as in the request
+  std::string path;                    ///< as in the request
+  std::vector<std::string> also = {};  ///< the same
   InputKind kind = InputKind::mesh;
   int64_t vertices = -1, faces = -1;  ///< as in the file, of points the different ones; -1: of a stage file not known
   std::optional<WorldPoint> box_min, box_max;  ///< of the surface, world units; of a stage file not known

@@ -65,8 +65,8 @@ Input input_of(const MemoryGrid& grid, const std::string& name, const InputReque
 /// sampled, as those of NanoVDB (nanoToOpenVDB() converts them).
 std::shared_ptr<const GridField> grid_field(const MemoryGrid& grid, const std::string& name);
 
-/// What read_input() gives of a file of these bytes, which are those of a .vdb or .nvdb file, or of a stream that
-/// OpenVDB wrote. Borrows them for the call. Throws: as read_input() does.
+/// What read_input() gives of a file of these bytes, which are those of a .vdb or .nvdb file, of a stream that OpenVDB
+/// wrote, or of a grid of NanoVDB in memory. Borrows them for the call. Throws: as read_input() does.
 Input input_of_vdb(View<const char> bytes, const std::string& name, const InputRequest& request, const Context& context,
                    const Tell& tell = {});
 

@@ -32,4 +32,8 @@ class HeldGrid {
   VolumeGrid volume_, labels_;
 };
 
+/// A copy of the grid of NanoVDB whose bytes these are, wherever they begin; null where they are none, as those of a
+/// .nvdb file.
+std::shared_ptr<const HeldGrid> copied_nano_grid(View<const char> bytes);
+
 }  // namespace isoshell

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "implicit/volumes/scalar_field.h"
 #include "io/bytes/mesh_source.h"
@@ -32,6 +33,8 @@ bool unpack_stream(View<const char> packed, bool zip, View<char> to);
 
 /// The field keeps what it needs of the source's bytes; the source must outlive it.
 std::unique_ptr<ScalarField> read_vdb_volume(const MeshSource& source, const VolumeReadOptions& options);
+/// Of a .nvdb file, with what keeps each from being a volume.
+std::vector<VolumeGrid> nano_grids(const MeshSource& source);
 std::unique_ptr<ScalarField> read_nano_volume(const MeshSource& source, const VolumeReadOptions& options);
 
 /// The surface of a field, as read_volume() finds it.
