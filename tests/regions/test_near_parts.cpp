@@ -1,6 +1,7 @@
 // Parts of meshes that lie in others, nearly on others, or leave thin spaces between them.
 #include <cmath>
 
+#include "geometry/world_vector.h"
 #include "isoshell/advanced/stages.h"
 #include "isoshell/boolean_union.h"
 #include "isoshell/part_regions.h"
@@ -141,6 +142,26 @@ TEST_CASE("parts: a pin with other facets than its hole shares the wall when it 
   options.snap_world = .5;
   CHECK(contains(message_of(ErrorCode::usage, [&] { remesh(loose, options, context); }),
                  "--snap is 0.5; it may be at most a 20th of the longest side, 0.298858"));
+}
+
+TEST_CASE("parts: a pin a little smaller than its hole shares all of the wall, or none", "[regions][unit]") {
+  for (const double near : {.006, .009, .012, .1 / 3}) {
+    for (const double gap : {.005, .01, .015, .017}) {
+      TriangleSoup pin = cylinder(0, 1, 48);
+      for (WorldPoint& p : pin.vertices) p = {(1 - gap) * p.x, (1 - gap) * p.y, p.z};
+      const TriangleSoup loose = together_as_groups({plate_with_hole(48), pin});
+      CpuContext context;
+      const TriangleSoup walls = find_part_regions(loose, {"groups", near}, context).walls;
+      double shared = 0;
+      for (size_t t = 0; t < walls.triangles.size(); ++t) {
+        const auto& [a, b, c] = walls.triangles[t];
+        if (walls.regions.labels[t] == std::array<int32_t, 2>{1, 2})
+          shared += triangle_area(walls.vertices[a], walls.vertices[b], walls.vertices[c]);
+      }
+      INFO("a gap of " << gap << ", near is " << near);
+      CHECK(shared == Approx(gap < 2 * near ? 96 * std::sin(std::acos(-1) / 48) : 0).epsilon(.05));
+    }
+  }
 }
 
 TEST_CASE("parts: nothing is said of near parts that are made one as they should be", "[regions][unit]") {

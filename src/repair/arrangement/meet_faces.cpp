@@ -2,6 +2,7 @@
 // each other in doubles, which are right to a thousandth of a step.
 #include "repair/arrangement/meet_faces.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/segment.h"
@@ -53,7 +54,19 @@ class Separation {
     const HeightPlane& plane = face_[1 - k]->plane;
     const auto& at = face_[k]->at;
     a = plane.height(at[0]), b = plane.height(at[1]), c = plane.height(at[2]);
-    return (a > reach_ && b > reach_ && c > reach_) || (a < -reach_ && b < -reach_ && c < -reach_);
+    return ((a > reach_ && b > reach_ && c > reach_) || (a < -reach_ && b < -reach_ && c < -reach_)) && !lies_on(k);
+  }
+  /// Whether each corner of k is made one with some corner of the other: then the faces are, though they are farther
+  /// apart than what else is made one. Otherwise others at their corners would do so to some of these corners alone.
+  bool lies_on(size_t k) const {
+    for (const double height : height_[k])
+      if (std::abs(height) > weld_) return false;
+    const auto is_near_corner = [&](const WorldPoint& p) {
+      const auto& to = face_[1 - k]->at;
+      return std::any_of(to.begin(), to.end(), [&](const auto& q) { return distance_sq(p, q) <= weld_ * weld_; });
+    };
+    const auto& at = face_[k]->at;
+    return std::all_of(at.begin(), at.end(), is_near_corner);
   }
   /// The same of those that are not shared.
   bool is_beside_but_shared(size_t k) const {
@@ -63,7 +76,7 @@ class Separation {
       is_above = is_above && height_[k][i] > reach_;
       is_below = is_below && height_[k][i] < -reach_;
     }
-    return is_above || is_below;
+    return (is_above || is_below) && !lies_on(k);
   }
 
   /// Points that are near each other are near both planes: whether those of one face are apart from those of the other
