@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "features/mesh/editable_mesh.h"
+#include "features/walls/sheet_order.h"
 #include "support/catch.h"
 
 using namespace isoshell;
@@ -343,4 +344,32 @@ TEST_CASE("editable mesh: what a triangle meets outside of shared corners is fou
     CHECK(t != across);
     CHECK(meets_back);
   }
+}
+
+TEST_CASE("the tip of a low piece of a region does not go through what the piece lies on", "[features]") {
+  // Region 1 is a pyramid on region 2, whose wall goes on around it.
+  Parts parts;
+  for (const WorldPoint& p : {WorldPoint{0, 0, 0}, {900, 0, 0}, {300, 900, 0}, {400, 300, 50}})
+    parts.vertices.push_back(vertex_at(p.x, p.y, p.z, p.z > 0 ? Kind::free : Kind::corner));
+  for (const WorldPoint& p : {WorldPoint{300, -900, 0}, {1500, 900, 0}, {-900, 900, 0}})
+    parts.vertices.push_back(vertex_at(p.x, p.y, p.z, Kind::corner));
+  const PatchLabels labels{{1, 0}, {2, 1}, {2, 0}};
+  const auto add = [&](const Corners& corner, uint32_t patch) {
+    parts.add(corner);
+    parts.triangles.back().patch = patch;
+  };
+  for (const Corners& top : {Corners{0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) add(top, 0);
+  add({0, 1, 2}, 1);
+  for (const Corners& around : {Corners{1, 0, 4}, {2, 1, 5}, {0, 2, 6}}) add(around, 2);
+  for (const auto& [u, v] : {std::pair{0u, 1u}, {1u, 2u}, {2u, 0u}}) parts.put_on_curve(u, v, 0);
+  EditableMesh mesh = parts.mesh();
+  const auto move_to = [&](double x, double y, double z) {
+    MeshChange change;
+    return mesh.move(3, vertex_at(x, y, z), change, [&] { return are_sheets_in_order(mesh, change, labels); });
+  };
+  CHECK(move_to(500, 200, 20));
+  CHECK_FALSE(move_to(400, 300, -50));
+  CHECK(mesh.at(3) == WorldPoint{500, 200, 20});
+  MeshChange change;
+  CHECK(mesh.move(3, vertex_at(400, 300, -50), change, always));  // which nothing else keeps from happening
 }

@@ -74,6 +74,7 @@ WallMesh::WallMesh(const std::shared_ptr<const CutLookup>& lookup, const WallTri
 
 WallMesh::WallMesh(std::shared_ptr<const CutLookup> lookup, EditableMesh mesh)
     : EditableMesh(std::move(mesh)), lookup_(std::move(lookup)) {
+  if (lookup_->cut().regions) labels_ = labels_of_patches(lookup_->cut());
   keep_apart(cell_between(*this, lookup_->cut().longest_edge_q8));
 }
 
@@ -130,7 +131,7 @@ bool WallMesh::collapse(uint32_t gone, uint32_t into, MeshChange& change, Shapes
                                  : !(lookup_->cosine(*this, made) > 0))
         return false;
     }
-    return true;
+    return keeps_sheets_in_order(*this, change, labels_);
   });
 }
 
@@ -154,13 +155,14 @@ bool WallMesh::flip(uint32_t triangle, size_t edge, double cost_of_valence, Mesh
     const double before = cost(triangles()[change.replaced[0]]) + cost(triangles()[change.replaced[1]]);
     const double after = cost(first) + cost(second);
     if (after + irregular(-1, 1) >= kEnough * (before + irregular(0, 0))) return false;
-    return after < before || (is_sound(first) && is_sound(second));
+    return (after < before || (is_sound(first) && is_sound(second))) && keeps_sheets_in_order(*this, change, labels_);
   });
 }
 
 bool WallMesh::move(uint32_t v, const RegionVertex& to, MeshChange& change) {
   const double before = cost_around(v);
-  return EditableMesh::move(v, to, change, [&] { return cost_around(v) < kEnough * before; });
+  return EditableMesh::move(
+      v, to, change, [&] { return cost_around(v) < kEnough * before && are_sheets_in_order(*this, change, labels_); });
 }
 
 }  // namespace isoshell

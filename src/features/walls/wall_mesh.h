@@ -9,6 +9,7 @@
 #include "features/angles/cut_lookup.h"
 #include "features/mesh/editable_mesh.h"
 #include "features/mesh/refine_mesh.h"
+#include "features/walls/sheet_order.h"
 
 namespace isoshell {
 
@@ -23,7 +24,8 @@ struct WallTriangles {
 };
 
 /// An EditableMesh whose triangles are kept apart. No split, and no collapse with Shapes::good, turns a triangle over
-/// or makes a needle of it, unless it is short; flips and moves are made where they cost less.
+/// or makes a needle of it, unless it is short; flips and moves are made where they cost less. None turns a piece of a
+/// region inside out.
 class WallMesh : public EditableMesh {
  public:
   /// The fine mesh and `cut` must outlive it. Cost: O(fine triangles), and a sort of the edges of curves.
@@ -60,6 +62,7 @@ class WallMesh : public EditableMesh {
   bool may_replace(const RegionTriangle& made, const RegionTriangle& before, double short_sq_q8) const;
 
   std::shared_ptr<const CutLookup> lookup_;
+  PatchLabels labels_;  ///< empty: the surface parts no regions
 };
 
 }  // namespace isoshell
