@@ -53,8 +53,11 @@ def by_gmsh(vertices: Array, shells: Sequence[Array], quality: float) -> tuple[A
     was_running = gmsh.isInitialized()
     if not was_running:
         gmsh.initialize(interruptible=False)
-    terminal = gmsh.option.getNumber("General.Terminal")
-    gmsh.option.setNumber("General.Terminal", 0)
+    # By default faces that meet at less than .1 degrees are refused as ones that overlap, which a result has none of.
+    options = {"General.Terminal": 0, "Mesh.AngleToleranceFacetOverlap": 0}
+    before = {name: gmsh.option.getNumber(name) for name in options}
+    for name, value in options.items():
+        gmsh.option.setNumber(name, value)
     gmsh.model.add("isoshell fill")
     try:
         surfaces = [gmsh.model.addDiscreteEntity(2) for _ in shells]
@@ -68,7 +71,8 @@ def by_gmsh(vertices: Array, shells: Sequence[Array], quality: float) -> tuple[A
         tetrahedra = gmsh.model.mesh.getElementsByType(4)[1].reshape(-1, 4)
     finally:
         gmsh.model.remove()
-        gmsh.option.setNumber("General.Terminal", terminal)
+        for name, value in before.items():
+            gmsh.option.setNumber(name, value)
         if not was_running:
             gmsh.finalize()
     order = np.argsort(tags)

@@ -75,6 +75,16 @@ def test_a_closed_mesh_without_regions_is_filled_and_an_open_one_is_refused(ball
         closed.fill("netgen")
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_gmsh_fills_what_is_as_thin_as_a_twentieth_of_a_degree():
+    pytest.importorskip("gmsh")
+    corners = [(0, 0, 0), (10, 0, 0), (10, 0, .0087), (0, 8, 0), (10, 8, 0), (10, 8, .0087)]
+    faces = [(0, 1, 2), (3, 5, 4), (0, 4, 1), (0, 3, 4), (1, 5, 2), (1, 4, 5), (0, 2, 5), (0, 5, 3)]
+    wedge = isoshell.remesh(isoshell.Mesh(np.array(corners), np.array(faces)), vertices=50, device="cpu")
+    assert wedge.report["quality"]["dihedral_min_deg"] < .1
+    assert wedge.fill("gmsh").volume(1) == pytest.approx(10 * 8 * .0087 / 2, rel=.1)
+
+
 def test_the_command_fills_what_it_writes(tmp_path, ball):
     from isoshell.__main__ import remesh
 
