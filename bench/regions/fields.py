@@ -1,20 +1,16 @@
 #!/usr/bin/env python3
-"""Fields that reach the sides of their arrays, clouds of open surfaces, and tetrahedra in regions.
+"""Fields that reach the sides of their arrays, and clouds of open surfaces.
 
-    python3 bench/regions/fields.py [LABELS.npz|ASSEMBLY ...]
+    python3 bench/regions/fields.py
 
-Prints four tables. Fields are a gyroid over two periods, whose volume is known, with sides of each kind. Clouds are random
-points of surfaces of known area, with borders kept. The last fills regions by TetGen and Gmsh: those of volumes
-of labels (arrays `labels` of the files, and 40 of region_volumes.py) and of the components of meshes. CPU seconds are of one thread.
+Prints three tables. Fields are a gyroid over two periods, whose volume is known, with sides of each kind, and a ball that falls
+onto a side. Clouds are random points of surfaces of known area, with borders kept. CPU seconds are of one thread.
 """
-import pathlib
-import sys
 import time
 import warnings
 
 import isoshell
 import numpy as np
-from region_volumes import RANDOM_VOLUMES, random_labels
 
 
 def measured(source, **options):
@@ -105,38 +101,8 @@ def clouds():
             topology["boundary_loops"], f"{quality['q_avg']:.3f}", f"{quality['theta_min_deg']:.1f}", f"{seconds:.1f}")
 
 
-def fill(paths):
-    print()
-    row("labels, vertices", *(f"{mesher}: tetrahedra, wall s" for mesher in ("tetgen", "gmsh")))
-    row(*["---"] * 3)
-    for path in paths:
-        for vertices in (6000, 20_000):
-            if path.endswith(".npz"):
-                made, _ = measured(isoshell.Labels(np.load(path)["labels"]), vertices=vertices)
-            else:
-                made, _ = measured(path, regions="components", vertices=vertices)
-            row(f"{pathlib.Path(path).stem}, {vertices}", *(filled_by(made, mesher) for mesher in ("tetgen", "gmsh")))
-    refused = {"tetgen": 0, "gmsh": 0}
-    numbers = range(0, RANDOM_VOLUMES, 5)
-    for number in numbers:
-        made, _ = measured(isoshell.Labels(random_labels(number)), vertices=1500)
-        for mesher in refused:
-            refused[mesher] += filled_by(made, mesher).startswith("refused")
-    row(f"{len(numbers)} random volumes, 1500", *(f"{count} refused" for count in refused.values()))
-
-
-def filled_by(made, mesher):
-    start = time.time()
-    try:
-        filled = made.fill(mesher)
-    except isoshell.Error as error:
-        return f"refused: {error}"
-    return f"{len(filled.tetrahedra)}, {time.time() - start:.1f}"
-
-
 if __name__ == "__main__":
     warnings.simplefilter("ignore", isoshell.RunWarning)
     fields()
     drop()
     clouds()
-    fill(sys.argv[1:])
