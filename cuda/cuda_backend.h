@@ -14,6 +14,8 @@ class CudaBackend final : public BackendTable {
   SiteSet voxelize(const LatticeSurface&, Context&) const override;
   SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const override;
   Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const override;
+  LevelSetSurface level_set_surface(const LatticeSurface&, const TriangleSoup* exact, const Sheet&, SheetPart,
+                                    Context&) const override;
   LevelSet build_level_set(const LevelSetSurface&, const SiteSet&, const Sheet&, const LevelSetOptions&,
                            Context&) const override;
   Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const override;
@@ -51,6 +53,10 @@ class CudaBackend final : public BackendTable {
 class CudaExecutor;
 struct CudaBuildShell {
   static Shell run(CudaExecutor&, const SiteSet&, const ShellOptions&);
+};
+/// The voxels of a shell, without closest sites.
+struct CudaDilate {
+  static VoxelSet run(CudaExecutor&, const SiteSet&, int32_t radius_vox);
 };
 
 }  // namespace isoshell

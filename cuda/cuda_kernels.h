@@ -58,6 +58,11 @@ namespace label {
 template <int kCapacity>
 struct LabelBlock;
 }
+namespace level_set_steps {
+struct BlockSteps;
+struct ListCorners;
+struct MeasureLeaf;
+}  // namespace level_set_steps
 namespace sample_cooperative {
 struct CountMet;
 struct FillMet;
@@ -87,7 +92,7 @@ struct CudaKernels {
   using ListSiteTriangles = ListSiteTrianglesByMasks;
   /// cuda_sheet.cu: the stage itself.
   using BuildShell = CudaBuildShell;
-  /// cuda_level_set.cu: the voxels of a shell.
+  /// cuda_shell.cu: the voxels of a shell, without closest sites.
   using Dilate = CudaDilate;
   /// sheet_flood.cuh: a block of threads floods a block of leaves, and the host looks every eighth round only.
   using FindOutside = FindOutsideByBlocks;
@@ -128,6 +133,8 @@ struct CudaKernels {
       flood::FindNeighbours, flood::ListReached, flood::Spread,
       // label_cooperative.cuh: a warp a block of vertices, which gathers the block's candidates together.
       label::LabelBlock<256>,
+      // level_set_cooperative.cuh: a block of threads a leaf, a warp 32 voxels; a warp a leaf, a lane a triangle.
+      level_set_steps::MeasureLeaf, level_set_steps::BlockSteps, level_set_steps::ListCorners,
       // sample_cooperative.cuh: a warp a leaf, a lane a site.
       SortLeafTriangles, SampleSites, sample_cooperative::CountMet, sample_cooperative::FillMet,
       // sheet_components.cuh: a warp a leaf, a lane a vertex.

@@ -130,14 +130,18 @@ closest::Transform transform_to_sites(CudaExecutor& exec, int32_t band_vox) {
   }
 }
 
-/// The shell's leaves, and their index but for masks and first.
+/// The shell's leaves and their index, with room for masks and first.
 VoxelSet find_shell_leaves(CudaExecutor& exec, const VoxelSetView& sites, int32_t band_vox) {
   LeafMarks marks(exec, sites.block_dims);
   const auto kernel = band_vox <= 8 ? mark_reached<1> : band_vox <= 16 ? mark_reached<2> : mark_reached<3>;
   const unsigned blocks = exec.device().resident_blocks(blocks_for(sites.leaf_key.size * 32, kMarkThreads), 8);
   kernel<<<blocks, kMarkThreads, 0, exec.stream()>>>(sites, band_vox, marks.marks());
   exec.check("mark shell leaves");
-  return marks.list(exec);
+  VoxelSet set = marks.list(exec);
+  set.mask = exec.make<LeafMask>(set.leaf_count());
+  set.first = exec.make<int64_t>(set.leaf_count() + 1);
+  require_success(cudaMemsetAsync(set.first.data() + set.leaf_count(), 0, sizeof(int64_t), exec.stream()), "clear");
+  return set;
 }
 
 /// The rows of the shell, and counters: of them, and of those taken by a transform, two of which may run.
@@ -166,13 +170,18 @@ Buffer<closest::SiteWord> words_of(CudaExecutor& exec, const VoxelSetView& sites
   return words;
 }
 
+/// Masks of the set's leaves, and before each of them the voxels of those before it.
+void find_masks(CudaExecutor& exec, RowList& list, const closest::Input& in, VoxelSet& set) {
+  find_shell_masks(exec, {list.rows(0), in, {set.mask.data(), set.first.data(), nullptr, nullptr}});
+  exclusive_scan_async(exec.device(), set.first.view());
+}
+
 void fill_shell(CudaExecutor& exec, const VoxelSetView& sites, Shell& shell) {
   VoxelSet& set = shell.voxels;
   RowList list(exec, set.view());
   const Buffer<closest::SiteWord> words = words_of(exec, sites);
   const closest::Input in = {sites, set.view(), words.data(), shell.band_vox};
-  find_shell_masks(exec, {list.rows(0), in, {set.mask.data(), set.first.data(), nullptr, nullptr}});
-  exclusive_scan_async(exec.device(), set.first.view());
+  find_masks(exec, list, in, set);
   const closest::Transform to_sites = transform_to_sites<1>(exec, shell.band_vox);  // while the device is busy
   set.active = exec.value(View<const int64_t>(set.first.view()), set.leaf_count());
   shell.closest_site = exec.make<uint32_t>(set.active);
@@ -189,13 +198,19 @@ Shell CudaBackend::build_shell(const SiteSet& site_set, const ShellOptions& opti
   const VoxelSetView sites = sites_here->voxels.view();
   Shell shell;
   shell.band_vox = options.band_vox;
-  VoxelSet& set = shell.voxels;
-  set = find_shell_leaves(exec, sites, options.band_vox);
-  set.mask = exec.make<LeafMask>(set.leaf_count());
-  set.first = exec.make<int64_t>(set.leaf_count() + 1);
-  require_success(cudaMemsetAsync(set.first.data() + set.leaf_count(), 0, sizeof(int64_t), exec.stream()), "clear");
-  if (set.leaf_count() > 0) fill_shell(exec, sites, shell);
+  shell.voxels = find_shell_leaves(exec, sites, options.band_vox);
+  if (shell.voxels.leaf_count() > 0) fill_shell(exec, sites, shell);
   return shell;
+}
+
+VoxelSet CudaDilate::run(CudaExecutor& exec, const SiteSet& sites, int32_t radius_vox) {
+  const VoxelSetView from = sites.voxels.view();
+  VoxelSet set = find_shell_leaves(exec, from, radius_vox);
+  if (set.leaf_count() == 0) return set;
+  RowList list(exec, set.view());
+  find_masks(exec, list, {from, set.view(), nullptr, radius_vox}, set);
+  set.active = exec.value(View<const int64_t>(set.first.view()), set.leaf_count());
+  return set;
 }
 
 }  // namespace isoshell

@@ -37,6 +37,10 @@ Shell copy_product(const Shell& s, Copy copy) {
   return {copy_product(s.voxels, copy), s.band_vox, copy(s.closest_site), copy(s.distance_sq_vox)};
 }
 template <class Copy>
+LevelSetSurface copy_product(const LevelSetSurface& s, Copy copy) {
+  return {copy(s.corner), s.first_of_sheet};
+}
+template <class Copy>
 LevelSet copy_product(const LevelSet& s, Copy copy) {
   return {s.frame, copy_product(s.voxels, copy), copy(s.distance_vox), s.band_vox};
 }
@@ -77,6 +81,7 @@ DualMesh copy_product(const DualMesh& m, Copy copy) {
 
 /// Where the arrays of a product lie.
 inline Memory& memory_of(const VoxelSet& v) { return v.leaf_key.memory(); }
+inline Memory& memory_of(const LevelSetSurface& s) { return s.corner.memory(); }
 inline Memory& memory_of(const LevelSet& s) { return memory_of(s.voxels); }
 inline Memory& memory_of(const LatticeSurface& s) { return s.points.memory(); }
 inline Memory& memory_of(const SiteSet& s) { return memory_of(s.voxels); }

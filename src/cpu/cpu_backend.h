@@ -14,6 +14,8 @@ class CpuBackend final : public BackendTable {
   SiteSet voxelize(const LatticeSurface&, Context&) const override;
   SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const override;
   Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const override;
+  LevelSetSurface level_set_surface(const LatticeSurface&, const TriangleSoup* exact, const Sheet&, SheetPart,
+                                    Context&) const override;
   LevelSet build_level_set(const LevelSetSurface&, const SiteSet&, const Sheet&, const LevelSetOptions&,
                            Context&) const override;
   Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const override;

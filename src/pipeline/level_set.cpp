@@ -20,7 +20,7 @@ LevelSet level_set(const Prepared& prepared, double band_vox, Context& context) 
   const PreparedSurface& p = sheet.get();
   const bool may_bridge = !p.surface.topology.closed && p.closing_vox > 0;
   const SheetPart part = p.grown ? SheetPart::alone : may_bridge ? SheetPart::beside : SheetPart::none;
-  const LevelSetSurface surface = level_set_surface(p.surface, given.exact.get(), p.sheet, part);
+  const LevelSetSurface surface = level_set_surface(p.surface, given.exact.get(), p.sheet, part, context);
   return build_level_set(surface, p.grown ? p.grown.voxels : p.sites, p.sheet, {band_vox, p.closing_vox}, context);
 }
 

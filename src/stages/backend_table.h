@@ -18,6 +18,8 @@ class BackendTable {
   virtual SiteSet voxelize(const LatticeSurface&, Context&) const = 0;
   virtual SiteSamples sample_sites(const LatticeSurface&, const SiteSet&, Context&) const = 0;
   virtual Shell build_shell(const SiteSet&, const ShellOptions&, Context&) const = 0;
+  virtual LevelSetSurface level_set_surface(const LatticeSurface&, const TriangleSoup* exact, const Sheet&, SheetPart,
+                                            Context&) const = 0;
   virtual LevelSet build_level_set(const LevelSetSurface&, const SiteSet&, const Sheet&, const LevelSetOptions&,
                                    Context&) const = 0;
   virtual Buffer<std::byte> nano_index_grid(const VoxelSet&, const LatticeFrame&, const char*, Context&) const = 0;

@@ -8,6 +8,9 @@
 
 namespace isoshell {
 
+template <>
+constexpr bool kHasNoPadding<WorldPoint> = sizeof(WorldPoint) == 3 * sizeof(double);
+
 /// Corners by point index.
 struct TriangleIndices {
   uint32_t a, b, c;

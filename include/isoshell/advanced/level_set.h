@@ -43,13 +43,15 @@ enum class SheetPart {
 };
 
 /// The surface of a level set. `exact` are the vertices and triangles that were snapped; without it the snapped
-/// positions count. On the host.
+/// positions count. Cost: O(triangles). Throws: interrupted.
 LevelSetSurface level_set_surface(const LatticeSurface& surface, const TriangleSoup* exact, const Sheet& sheet,
-                                  SheetPart part);
+                                  SheetPart part, Context& context);
 
 /// Measures and signs the band. Each distance is the least over all triangles, by the same operations on doubles, so
-/// that the order in which they are looked at does not matter. Cost: O(triangles * leaves that they reach + voxels *
-/// triangles that may be nearest); some 40 bytes a voxel within half a voxel more than the band, 150 a triangle.
+/// that the order in which they are looked at does not matter. The result lies where the context's backend works;
+/// there nano_index_grid() of its voxels makes a grid of NanoVDB whose value i + 1 belongs to distance_vox[i]. Cost:
+/// O(triangles * leaves that they reach + voxels * triangles that may be nearest); some 40 bytes a voxel within half a
+/// voxel more than the band, 200 a triangle.
 /// Throws: usage for a band outside of its range; interrupted.
 LevelSet build_level_set(const LevelSetSurface& surface, const SiteSet& sites, const Sheet& sheet,
                          const LevelSetOptions& options, Context& context);

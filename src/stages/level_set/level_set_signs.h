@@ -1,171 +1,145 @@
-// Which voxels near the surface are outside: those that paths along the lattice join with the outside first.
+// Which voxels near the surface are outside: those that paths along the lattice join with the outside first. All of it
+// is in bits, a plane of a leaf at a time.
 #pragma once
 
-#include "stages/level_set/level_set_distances.h"
+#include "stages/level_set/level_set_beside.h"
+#include "stages/level_set/level_set_crossings.h"
 #include "stages/level_set/level_set_solid.h"
 
-namespace isoshell::level_set_steps {
+namespace isoshell {
+namespace level_set_steps {
 
-/// The last two are sides until a path says more.
-enum Side : uint8_t { kOutside, kInside, kPerhapsInside, kPerhapsOutside };
-ISOSHELL_HD inline bool is_open(uint8_t side) { return side >= kPerhapsInside; }
+constexpr float kBulge = 0.25f;  ///< a smoothed sheet may leave its solid, by less than this
 
-constexpr double kOnSurface = 1e-6;  ///< a voxel centre so near has no side, and no path goes through it
-constexpr double kBulge = 0.25;      ///< a smoothed sheet may leave its solid, by less than this
+/// What the solid and the distances say of a candidate.
+struct SidesBySolid {
+  View<LeafMask> solid, outside, inside;  ///< neither outside nor inside: open, until a path says more
+  View<LeafMask> on_surface, near;        ///< less than kOnSurface from the surface, and no more than a step
+};
 
 /// What is in the solid and near its boundary is open, as closing and repair have put voxels there that lie outside of
 /// the surface; sites are, too, and what a bulge of the surface may hold. All else has the side that the solid says.
-struct SideBySolid {
+struct FindSidesBySolid {
   VoxelSetView candidates, sites, near_sheet;
   RowsOfSolid rows;
   View<const float> distance;
-  View<uint8_t> side;
-  ISOSHELL_HD void operator()(int64_t leaf) const {
+  SidesBySolid sides;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const int64_t leaf = i >> 3;
+    const int x = int(i & 7);
     const Voxel at = leaf_of_key(candidates.leaf_key[leaf]);
-    const LeafMask solid = rows.leaf_at(at);
-    for_each_active(candidates, leaf, [&](int offset, int64_t i) {
-      const Voxel v = voxel_at(at, offset);
-      if (is_on(solid, offset))
-        side[i] = find_voxel(near_sheet, v) >= 0 || find_voxel(sites, v) >= 0 ? kPerhapsInside : kInside;
-      else
-        side[i] = distance[i] < kBulge ? kPerhapsOutside : kOutside;
-    });
+    const LeafMask& mask = candidates.mask[leaf];
+    const uint64_t all = mask.word[x], solid = all & rows.plane_at(at, x);
+    uint64_t bulge = 0, on_surface = 0, near = 0;
+    int64_t voxel = candidates.first[leaf] + rank_of_plane(mask, x);
+    for (uint64_t bits = all; bits; bits &= bits - 1, ++voxel) {
+      const uint64_t bit = bits & ~(bits - 1);
+      if (distance[voxel] < kBulge) bulge |= bit;
+      if (distance[voxel] < kOnSurface) on_surface |= bit;
+      if (distance[voxel] <= kLongestStep) near |= bit;
+    }
+    sides.solid[leaf].word[x] = solid;
+    sides.outside[leaf].word[x] = all & ~solid & ~bulge;
+    sides.inside[leaf].word[x] = solid & ~(solid ? plane_at(near_sheet, at, x) | plane_at(sites, at, x) : 0);
+    sides.on_surface[leaf].word[x] = on_surface;
+    sides.near[leaf].word[x] = near;
   }
 };
 
-struct IsOpen {
-  View<const uint8_t> side;
-  ISOSHELL_HD bool operator()(int64_t i) const { return is_open(side[i]); }
-};
-
-/// A triangle seen along an axis.
-class SeenTriangle {
+/// Numbers up to 7, one for each of 64 voxels.
+class BitCounts {
  public:
-  ISOSHELL_HD SeenTriangle(const WorldPoint* corner, int axis) {
-    for (int i = 0; i < 3; ++i) {
-      const double at[3] = {corner[i].x, corner[i].y, corner[i].z};
-      u_[i] = at[(axis + 1) % 3], v_[i] = at[(axis + 2) % 3], depth_[i] = at[axis];
-    }
+  ISOSHELL_HD void add(uint64_t one) {
+    const uint64_t twos = ones_ & one, fours = twos_ & twos;
+    ones_ ^= one;
+    twos_ ^= twos;
+    fours_ |= fours;
   }
-
-  /// Whether it meets the closed segment that is seen as the point (u, v), from one depth to a larger one. Corners and
-  /// edges belong to it: the side of a point from an edge is the same for both triangles there, so nothing slips
-  /// through between them. Of a triangle seen from its side all depths count.
-  ISOSHELL_HD bool meets(double u, double v, double from, double to, double& depth) const {
-    const double e[3] = {side(1, 2, u, v), side(2, 0, u, v), side(0, 1, u, v)};
-    if (!(e[0] >= 0 && e[1] >= 0 && e[2] >= 0) && !(e[0] <= 0 && e[1] <= 0 && e[2] <= 0)) return false;
-    const double sum = e[0] + e[1] + e[2];
-    const double least = triangle_search::smaller(triangle_search::smaller(depth_[0], depth_[1]), depth_[2]),
-                 most = triangle_search::larger(triangle_search::larger(depth_[0], depth_[1]), depth_[2]);
-    if (sum == 0) {
-      depth = triangle_search::larger(least, from);
-      return least <= to && most >= from && is_within_box(u, v);
-    }
-    depth = (e[0] * depth_[0] + e[1] * depth_[1] + e[2] * depth_[2]) / sum;
-    return depth >= from && depth <= to;
+  ISOSHELL_HD uint64_t any() const { return ones_ | twos_ | fours_; }
+  ISOSHELL_HD uint64_t larger_than(const BitCounts& other) const {
+    const uint64_t ones = ones_ & ~other.ones_, twos = (twos_ & ~other.twos_) | (~(twos_ ^ other.twos_) & ones);
+    return (fours_ & ~other.fours_) | (~(fours_ ^ other.fours_) & twos);
   }
 
  private:
-  /// Of a point from an edge, with opposite signs for its two directions.
-  ISOSHELL_HD double side(int a, int b, double u, double v) const {
-    const bool turned = u_[b] < u_[a] || (u_[b] == u_[a] && v_[b] < v_[a]);
-    const int p = turned ? b : a, q = turned ? a : b;
-    const double area = (u_[q] - u_[p]) * (v - v_[p]) - (v_[q] - v_[p]) * (u - u_[p]);
-    return turned ? -area : area;
-  }
-  ISOSHELL_HD bool is_within_box(double u, double v) const {
-    using triangle_search::larger;
-    using triangle_search::smaller;
-    return u >= smaller(smaller(u_[0], u_[1]), u_[2]) && u <= larger(larger(u_[0], u_[1]), u_[2]) &&
-           v >= smaller(smaller(v_[0], v_[1]), v_[2]) && v <= larger(larger(v_[0], v_[1]), v_[2]);
-  }
-
-  double u_[3], v_[3], depth_[3];
-};
-
-/// Which of the three steps from a voxel to a larger coordinate meet the surface, a bit each. Only steps between voxels
-/// of which one is open matter.
-struct BlockSteps {
-  Triangles triangles;
-  VoxelSetView candidates;
-  View<const int64_t> first;
-  View<const uint32_t> listed;
-  View<const float> distance;
-  View<const uint8_t> side;
-  View<uint8_t> blocked;
-
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    const Voxel at = leaf_of_key(candidates.leaf_key[leaf]);
-    for_each_active(candidates, leaf, [&](int offset, int64_t i) {
-      const Voxel v = voxel_at(at, offset);
-      unsigned looked_at = 0, met = 0;  // steps that may meet the surface, and that do
-      for (int axis = 0; axis < 3; ++axis) {
-        const int64_t next = find_voxel(candidates, next_along(v, axis, 1));
-        if (next < 0 || (!is_open(side[i]) && !is_open(side[next]))) continue;
-        constexpr float kStep = 1.001f;  // what a step meets is no farther from either end
-        if (distance[i] > kStep || distance[next] > kStep) continue;
-        const bool is_on_surface = distance[i] < kOnSurface || distance[next] < kOnSurface;
-        (is_on_surface ? met : looked_at) |= 1u << axis;
-      }
-      blocked[i] = uint8_t(met | (looked_at != 0 ? met_of(looked_at, leaf, v) : 0));
-    });
-  }
-
-  ISOSHELL_HD static Voxel next_along(Voxel v, int axis, int by) {
-    return {v.x + (axis == 0 ? by : 0), v.y + (axis == 1 ? by : 0), v.z + (axis == 2 ? by : 0)};
-  }
-
- private:
-  ISOSHELL_HD unsigned met_of(unsigned left, int64_t leaf, Voxel v) const {
-    const WorldPoint p = centre_of(v);
-    unsigned met = 0;
-    for (int64_t k = first[leaf]; k < first[leaf + 1] && left != 0; ++k) {
-      const int64_t t = listed[k];
-      if (!triangles.sphere[t].is_within(p, 1)) continue;
-      for (int axis = 0; axis < 3; ++axis)
-        if (left >> axis & 1 && meets(t, p, axis)) met |= 1u << axis, left &= ~(1u << axis);
-    }
-    return met;
-  }
-
-  ISOSHELL_HD bool meets(int64_t t, WorldPoint p, int axis) const {
-    double at[3] = {p.x, p.y, p.z}, depth;
-    if (!SeenTriangle(triangles.of(t), axis)
-             .meets(at[(axis + 1) % 3], at[(axis + 2) % 3], at[axis], at[axis] + 1, depth))
-      return false;
-    at[axis] = depth;
-    return triangles.counts(t, WorldPoint{at[0], at[1], at[2]});
-  }
+  uint64_t ones_ = 0, twos_ = 0, fours_ = 0;
 };
 
 /// A round of the search: an open voxel takes the side that most of its neighbours in reach have; the inside where as
 /// many have either.
 struct SpreadSides {
-  VoxelSetView candidates;
-  View<const uint32_t> open;
-  View<const uint8_t> side, blocked;
-  View<uint8_t> found;
-  ISOSHELL_HD void operator()(int64_t n) const {
-    const int64_t i = open[n];
-    found[n] = side[i];
-    if (!is_open(side[i])) return;
-    const Voxel v = voxel_of_index(candidates, i);
-    int count[4] = {};
-    for (int axis = 0; axis < 3; ++axis) {
-      const int64_t up = find_voxel(candidates, BlockSteps::next_along(v, axis, 1)),
-                    down = find_voxel(candidates, BlockSteps::next_along(v, axis, -1));
-      if (up >= 0 && !(blocked[i] >> axis & 1)) ++count[side[up]];
-      if (down >= 0 && !(blocked[down] >> axis & 1)) ++count[side[down]];
+  View<const LeafMask> candidates;
+  View<const uint32_t> beside;
+  View<const LeafMask> outside, inside, blocked;
+  View<LeafMask> next_outside, next_inside;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const PlaneOfLeaf plane{beside, i >> 3, int(i & 7)};
+    const uint64_t was_outside = plane.of(outside), was_inside = plane.of(inside);
+    uint64_t to_outside = 0, to_inside = 0;
+    if (const uint64_t open = plane.of(candidates) & ~(was_outside | was_inside)) {
+      BitCounts outer, inner;
+      for (int axis = 0; axis < 3; ++axis) {
+        const View<const LeafMask> blocked_along = blocked_steps(blocked, axis);
+        const uint64_t ahead = ~plane.of(blocked_along), behind = ~plane.behind(blocked_along, axis);
+        outer.add(plane.ahead(outside, axis) & ahead);
+        outer.add(plane.behind(outside, axis) & behind);
+        inner.add(plane.ahead(inside, axis) & ahead);
+        inner.add(plane.behind(inside, axis) & behind);
+      }
+      to_outside = open & outer.larger_than(inner);
+      to_inside = open & (outer.any() | inner.any()) & ~to_outside;
     }
-    if (count[kOutside] + count[kInside] > 0) found[n] = count[kOutside] > count[kInside] ? kOutside : kInside;
+    next_outside[plane.leaf].word[plane.x] = was_outside | to_outside;
+    next_inside[plane.leaf].word[plane.x] = was_inside | to_inside;
   }
 };
 
-struct TakeSides {
-  View<const uint32_t> open;
-  View<const uint8_t> found;
-  View<uint8_t> side;
-  ISOSHELL_HD void operator()(int64_t n) const { side[open[n]] = found[n]; }
+/// What is still open has the side that the solid says.
+struct CloseSides {
+  View<const LeafMask> candidates, solid, outside;
+  View<LeafMask> inside;
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const int64_t leaf = i >> 3;
+    const int x = int(i & 7);
+    inside[leaf].word[x] |= candidates[leaf].word[x] & ~outside[leaf].word[x] & solid[leaf].word[x];
+  }
 };
 
-}  // namespace isoshell::level_set_steps
+/// The candidates that are inside.
+template <class Exec>
+Buffer<LeafMask> find_inside(Exec& exec, const Triangles& triangles, const Lists& lists, const VoxelSetView& candidates,
+                             const VoxelSetView& sites, const RowsOfSolid& rows, View<const float> distance,
+                             int32_t rounds) {
+  const int64_t leaves = candidates.leaf_key.size, planes = 8 * leaves;
+  const auto masks = [&](int64_t of_leaf) { return exec.template make<LeafMask>(of_leaf * leaves); };
+  Buffer<LeafMask> solid = masks(1), outside = masks(1), inside = masks(1), on_surface = masks(1), near = masks(1);
+  exec.for_each("sides by solid", planes,
+                FindSidesBySolid{candidates,
+                                 sites,
+                                 triangles.near_sheet,
+                                 rows,
+                                 distance,
+                                 {solid.view(), outside.view(), inside.view(), on_surface.view(), near.view()}});
+  Buffer<uint32_t> beside = exec.template make<uint32_t>(6 * leaves);
+  exec.for_each("leaves beside", beside.size(), FindLeavesBeside{candidates, beside.view()});
+  Buffer<LeafMask> open_steps = masks(3), blocked = masks(3);
+  exec.for_each("open steps", planes,
+                FindOpenSteps{candidates.mask, beside.view(), outside.view(), inside.view(), on_surface.view(),
+                              near.view(), open_steps.view(), blocked.view()});
+  exec.for_each("block steps", leaves,
+                BlockSteps{triangles, candidates.leaf_key, lists.first.view(), lists.triangle.view(), open_steps.view(),
+                           blocked.view()});
+  Buffer<LeafMask> next_outside = masks(1), next_inside = masks(1);
+  for (int32_t round = 0; round < rounds; ++round) {
+    exec.for_each("spread sides", planes,
+                  SpreadSides{candidates.mask, beside.view(), outside.view(), inside.view(), blocked.view(),
+                              next_outside.view(), next_inside.view()});
+    std::swap(outside, next_outside);
+    std::swap(inside, next_inside);
+  }
+  exec.for_each("close sides", planes, CloseSides{candidates.mask, solid.view(), outside.view(), inside.view()});
+  return inside;
+}
+
+}  // namespace level_set_steps
+}  // namespace isoshell

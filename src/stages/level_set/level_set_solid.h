@@ -2,7 +2,8 @@
 #pragma once
 
 #include "isoshell/advanced/sheet.h"
-#include "stages/sparse/reach.h"
+#include "stages/sparse/drop_empty_leaves.h"
+#include "stages/sparse/marked_leaves.h"
 #include "voxel/leaf.h"
 
 namespace isoshell::level_set_steps {
@@ -47,45 +48,15 @@ struct ListCorners {
   }
 };
 
-struct KeyOfSolidVoxel {
+struct SolidVoxelOf {
   BoundaryFaces faces;
-  View<uint64_t> key;
-  ISOSHELL_HD void operator()(int64_t face) const {
-    const Voxel v = faces[face].solid_voxel();
-    key[face] = leaf_key(leaf_of_voxel(v)) << 9 | uint64_t(offset_in_leaf(v));
-  }
-};
-
-struct StartsLeaf {
-  View<const uint64_t> key;
-  ISOSHELL_HD bool operator()(int64_t i) const { return i == 0 || key[i] >> 9 != key[i - 1] >> 9; }
-};
-
-struct FillLeaf {
-  View<const uint64_t> key;
-  View<const uint32_t> start;
-  View<uint64_t> leaf_key;
-  View<LeafMask> mask;
-  ISOSHELL_HD void operator()(int64_t l) const {
-    leaf_key[l] = key[start[l]] >> 9;
-    LeafMask here{};
-    for (int64_t i = start[l]; i < key.size && key[i] >> 9 == leaf_key[l]; ++i)
-      here.word[key[i] >> 6 & 7] |= uint64_t(1) << (key[i] & 63);
-    mask[l] = here;
-  }
+  ISOSHELL_HD Voxel operator()(int64_t face) const { return faces[face].solid_voxel(); }
 };
 
 /// The voxels of the solid that have a boundary face.
 template <class Exec>
 VoxelSet rim_of(Exec& exec, const BoundaryFaces& faces, const int32_t extent_vox[3]) {
-  Buffer<uint64_t> key = exec.template make<uint64_t>(faces.count());
-  exec.for_each("key rim", faces.count(), KeyOfSolidVoxel{faces, key.view()});
-  exec.sort(key.view());
-  const Buffer<uint32_t> start = exec.select(key.size(), StartsLeaf{key.view()});
-  Buffer<uint64_t> leaf_key = exec.template make<uint64_t>(start.size());
-  Buffer<LeafMask> mask = exec.template make<LeafMask>(start.size());
-  exec.for_each("fill rim", start.size(), FillLeaf{key.view(), start.view(), leaf_key.view(), mask.view()});
-  return voxel_set_of(exec, leaf_key.view(), mask.view(), extent_vox);
+  return voxel_set_of_voxels(exec, extent_vox, faces.count(), SolidVoxelOf{faces});
 }
 
 struct MeetLeaf {
@@ -106,11 +77,22 @@ VoxelSet intersection(Exec& exec, const VoxelSetView& one, const VoxelSetView& o
   return voxel_set_of(exec, one.leaf_key, mask.view(), BlockExtent(one).vox);
 }
 
-/// Where rows of voxels along x enter the solid and leave it: (y, z, x) of the faces across x, ascending.
+/// Where rows of voxels along z enter the solid and leave it: the faces across z by (x, y, z), ascending, each with
+/// whether the solid lies below it.
 struct RowsOfSolid {
   View<const uint64_t> key;
 
-  ISOSHELL_HD static uint64_t key_of(Voxel v) { return uint64_t(v.y) << 32 | uint64_t(v.z) << 16 | uint64_t(v.x); }
+  ISOSHELL_HD static uint64_t key_of(Voxel v, bool is_solid_below) {
+    return uint64_t(v.x) << 40 | uint64_t(v.y) << 20 | uint64_t(v.z) << 1 | uint64_t(is_solid_below);
+  }
+  /// The voxels of the solid in a plane of a leaf.
+  ISOSHELL_HD uint64_t plane_at(Voxel leaf, int x) const {
+    uint64_t plane = 0;
+    for (int y = 0; y < 8; ++y) plane |= row_at({leaf.x * 8 + x, leaf.y * 8 + y, leaf.z * 8}) << (8 * y);
+    return plane;
+  }
+
+ private:
   ISOSHELL_HD int64_t first_from(uint64_t least) const {
     int64_t lo = 0, hi = key.size;
     while (lo < hi) {
@@ -122,44 +104,39 @@ struct RowsOfSolid {
     }
     return lo;
   }
-  /// The eight voxels of a row in a leaf, a bit each, lowest x first.
-  ISOSHELL_HD uint32_t row_at(Voxel first) const {
-    const int64_t begin = first_from(key_of({0, first.y, first.z}));
-    int64_t at = first_from(key_of(first));
-    uint32_t is_solid = uint32_t(at - begin) & 1, row = 0;
-    const uint64_t of_row = key_of({0, first.y, first.z});
-    for (int32_t x = 0; x < 8; ++x) {
-      for (; at < key.size && key[at] == of_row + uint64_t(first.x + x); ++at) is_solid ^= 1;
-      row |= is_solid << x;
+  /// Eight voxels, a bit each: every one is what the next face above it has below.
+  ISOSHELL_HD uint64_t row_at(Voxel first) const {
+    const uint64_t of_row = key_of({first.x, first.y, 0}, false), end_of_row = key_of({first.x, first.y + 1, 0}, false);
+    int64_t face = first_from(of_row + key_of({0, 0, first.z + 1}, false));
+    uint64_t row = 0;
+    for (int z = 0; z < 8; ++z) {
+      const uint64_t above = of_row + key_of({0, 0, first.z + z + 1}, false);
+      while (face < key.size && key[face] < above) ++face;
+      if (face == key.size || key[face] >= end_of_row) break;
+      row |= (key[face] & 1) << z;
     }
     return row;
   }
-  ISOSHELL_HD LeafMask leaf_at(Voxel leaf) const {
-    LeafMask mask{};
-    for (int y = 0; y < 8; ++y)
-      for (int z = 0; z < 8; ++z) {
-        const uint32_t row = row_at({leaf.x * 8, leaf.y * 8 + y, leaf.z * 8 + z});
-        for (int x = 0; x < 8; ++x) mask.word[x] |= uint64_t(row >> x & 1) << (8 * y + z);
-      }
-    return mask;
-  }
 };
 
-struct IsAcrossX {
+struct IsAcrossZ {
   BoundaryFaces faces;
-  ISOSHELL_HD bool operator()(int64_t face) const { return faces[face].axis == 0; }
+  ISOSHELL_HD bool operator()(int64_t face) const { return faces[face].axis == 2; }
 };
 
 struct KeyOfRow {
   BoundaryFaces faces;
   View<const uint32_t> across;
   View<uint64_t> key;
-  ISOSHELL_HD void operator()(int64_t i) const { key[i] = RowsOfSolid::key_of(faces[across[i]].corner); }
+  ISOSHELL_HD void operator()(int64_t i) const {
+    const BoundaryFace face = faces[across[i]];
+    key[i] = RowsOfSolid::key_of(face.corner, face.is_solid_below);
+  }
 };
 
 template <class Exec>
 Buffer<uint64_t> rows_of_solid(Exec& exec, const BoundaryFaces& faces) {
-  const Buffer<uint32_t> across = exec.select(faces.count(), IsAcrossX{faces});
+  const Buffer<uint32_t> across = exec.select(faces.count(), IsAcrossZ{faces});
   Buffer<uint64_t> key = exec.template make<uint64_t>(across.size());
   exec.for_each("key rows", across.size(), KeyOfRow{faces, across.view(), key.view()});
   exec.sort(key.view());

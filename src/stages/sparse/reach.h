@@ -3,7 +3,7 @@
 
 #include "isoshell/advanced/site_set.h"
 #include "stages/sparse/drop_empty_leaves.h"
-#include "voxel/atomic.h"
+#include "stages/sparse/marked_leaves.h"
 #include "voxel/closest.h"
 
 namespace isoshell {
@@ -43,83 +43,13 @@ ISOSHELL_HD inline void for_each_reached_run(const VoxelSetView& sites, int64_t 
     }
 }
 
-ISOSHELL_HD inline int64_t block_at(const VoxelSetView& set, int x, int y, int z) {
-  return (int64_t(x >> 4) * set.block_dims[1] + (y >> 4)) * set.block_dims[2] + (z >> 4);
-}
-
-struct MarkBlocks {
+/// For marked_leaves.h.
+struct ReachedLeaves {
   VoxelSetView sites;
   Ball ball;
-  View<uint32_t> table;
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    for_each_reached_run(sites, leaf, ball, [this](int x, int y, int z0, int z1) {
-      for (int z = z0 & ~15; z <= z1; z += 16) {
-        uint32_t& mark = table[block_at(sites, x, y, z)];
-        if (!mark) atomic_or(mark, 1u);
-      }
-    });
-  }
-};
-
-struct IsMarked {
-  View<const uint32_t> table;
-  ISOSHELL_HD bool operator()(int64_t i) const { return table[i] != 0; }
-};
-
-struct KeyOfBlock {
-  VoxelSetView sites;
-  View<const uint32_t> marked;
-  View<uint64_t> key;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    const int32_t z = int32_t(marked[i] % uint32_t(sites.block_dims[2])),
-                  xy = int32_t(marked[i] / uint32_t(sites.block_dims[2]));
-    key[i] = leaf_key({xy / sites.block_dims[1] * 16, xy % sites.block_dims[1] * 16, z * 16}) >> 12;
-  }
-};
-
-struct NumberBlock {
-  VoxelSetView sites;
-  View<const uint64_t> key;
-  View<uint32_t> table;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    const Voxel leaf = leaf_of_key(key[i] << 12);
-    table[block_at(sites, leaf.x, leaf.y, leaf.z)] = uint32_t(i);
-  }
-};
-
-/// Sets a bit per reached leaf, 64 words a block, in key order.
-struct MarkLeaves {
-  VoxelSetView sites;
-  Ball ball;
-  View<const uint32_t> table;
-  View<uint64_t> words;
-  ISOSHELL_HD void operator()(int64_t leaf) const {
-    for_each_reached_run(sites, leaf, ball, [this](int x, int y, int z0, int z1) {
-      for (int z = z0 & ~15; z <= z1; z += 16) {
-        const int lo = z0 > z ? z0 - z : 0, hi = z1 < z + 15 ? z1 - z : 15;
-        const int bit = (x & 15) << 8 | (y & 15) << 4;
-        const uint64_t run = ((uint64_t(2) << hi) - (uint64_t(1) << lo)) << (bit & 63);
-        uint64_t& word = words[int64_t(table[block_at(sites, x, y, z)]) * 64 + (bit >> 6)];
-        if ((word & run) != run) atomic_or(word, run);
-      }
-    });
-  }
-};
-
-struct CountBits {
-  View<const uint64_t> words;
-  View<int64_t> count;
-  ISOSHELL_HD void operator()(int64_t i) const { count[i] = popcount64(words[i]); }
-};
-
-struct ListLeaves {
-  View<const uint64_t> words, block_key;
-  View<const int64_t> first;
-  View<uint64_t> leaf_key;
-  ISOSHELL_HD void operator()(int64_t i) const {
-    int64_t at = first[i];
-    for (uint64_t bits = words[i]; bits; bits &= bits - 1)
-      leaf_key[at++] = block_key[i >> 6] << 12 | uint64_t((i & 63) << 6 | lowest_bit(bits));
+  template <class Run>
+  ISOSHELL_HD void operator()(int64_t leaf, Run run) const {
+    for_each_reached_run(sites, leaf, ball, run);
   }
 };
 
@@ -137,32 +67,11 @@ struct ReachLeaf {
   }
 };
 
-/// Leaves within reach of the sites, ascending; some may turn out empty.
-template <class Exec>
-Buffer<uint64_t> list_reached_leaves(Exec& exec, const VoxelSetView& sites, const Ball& ball) {
-  Buffer<uint32_t> table = exec.template make<uint32_t>(sites.block_table.size);
-  exec.fill(table.view(), 0u);
-  exec.for_each("mark blocks", sites.leaf_key.size, MarkBlocks{sites, ball, table.view()});
-  const Buffer<uint32_t> marked = exec.select(table.size(), IsMarked{table.view()});
-  Buffer<uint64_t> block_key = exec.template make<uint64_t>(marked.size());
-  exec.for_each("block keys", marked.size(), KeyOfBlock{sites, marked.view(), block_key.view()});
-  exec.sort(block_key.view());
-  exec.for_each("number blocks", marked.size(), NumberBlock{sites, block_key.view(), table.view()});
-
-  Buffer<uint64_t> words = exec.template make<uint64_t>(marked.size() * 64);
-  exec.fill(words.view(), uint64_t(0));
-  exec.for_each("mark leaves", sites.leaf_key.size, MarkLeaves{sites, ball, table.view(), words.view()});
-  Buffer<int64_t> first = exec.template make<int64_t>(words.size());
-  exec.for_each("count leaves", words.size(), CountBits{words.view(), first.view()});
-  Buffer<uint64_t> leaf_key = exec.template make<uint64_t>(exec.exclusive_scan(first.view()));
-  exec.for_each("list leaves", words.size(), ListLeaves{words.view(), block_key.view(), first.view(), leaf_key.view()});
-  return leaf_key;
-}
-
 /// Every voxel within the ball's radius of one of the set.
 template <class LeafPasses, class Exec>
 VoxelSet reach(Exec& exec, const VoxelSetView& sites, const Ball& ball) {
-  const Buffer<uint64_t> key = list_reached_leaves(exec, sites, ball);
+  const Buffer<uint64_t> key =
+      mark_leaves(exec, sites.block_dims, sites.leaf_key.size, ReachedLeaves{sites, ball}).leaf_key;
   Buffer<LeafMask> mask = exec.template make<LeafMask>(key.size());
   exec.for_each("reach", key.size(), ReachLeaf<LeafPasses>{sites, ball, key.view(), mask.view()});
   return voxel_set_of(exec, key.view(), mask.view(), BlockExtent(sites).vox);

@@ -9,9 +9,6 @@
 
 namespace isoshell {
 
-template <>
-constexpr bool kHasNoPadding<WorldPoint> = sizeof(WorldPoint) == 3 * sizeof(double);
-
 /// What a kernel sees of a soup.
 struct SoupView {
   View<const WorldPoint> vertices;
