@@ -60,7 +60,7 @@ LevelSet level_set_of_result(const TriangleMesh& mesh, const LatticeFrame& frame
   LatticeSurface surface = snap_surface(soup, with_room_for(frame, bounding_box(soup)), context);
   surface.topology = topology;
   const Prepared solid = prepare(std::move(surface), 0, options_of_solid(), context);
-  const LevelSetSurface measured = level_set_surface(solid.surface(), &soup, solid.sheet(), SheetPart::none);
+  const LevelSetSurface measured = level_set_surface(solid.surface(), &soup, solid.sheet(), SheetPart::none, context);
   return to_host(build_level_set(measured, solid.sites(), solid.sheet(), {band_vox, 0}, context));
 }
 

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "features/walls/curve_edges.h"
+#include "features/cutting/curve_edges.h"
 #include "geometry/half_edges.h"
 #include "isoshell/advanced/voxel_set.h"
 #include "voxel/union_find.h"

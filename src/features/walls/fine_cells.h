@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "features/angles/patch_mesh.h"
-#include "features/walls/curve_edges.h"
+#include "features/cutting/curve_edges.h"
 #include "features/walls/wall_mesh.h"
 #include "isoshell/advanced/stages.h"
 

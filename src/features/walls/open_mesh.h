@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "features/angles/cut_lookup.h"
+#include "features/cutting/curve_edges.h"
 #include "features/mesh/editable_mesh.h"
-#include "features/walls/curve_edges.h"
 #include "isoshell/advanced/stages.h"
 
 namespace isoshell {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "features/walls/curve_edges.h"
+#include "features/cutting/curve_edges.h"
 #include "isoshell/advanced/voxel_set.h"
 
 namespace isoshell {

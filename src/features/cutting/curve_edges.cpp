@@ -1,5 +1,5 @@
 // See curve_edges.h.
-#include "features/walls/curve_edges.h"
+#include "features/cutting/curve_edges.h"
 
 #include <algorithm>
 
