@@ -1,12 +1,34 @@
 // level_set (see remesh.h): of a prepared surface, on its grid.
 #include "isoshell/advanced/level_set.h"
 
+#include <optional>
+
+#include "core/copy_product.h"
 #include "isoshell/error.h"
 #include "isoshell/remesh.h"
 #include "pipeline/grid/prepared_surface.h"
+#include "pipeline/patches/cut_curves.h"
+#include "pipeline/patches/patches.h"
 #include "pipeline/patches/sheet_when_needed.h"
+#include "pipeline/sheet/prepare_surface.h"
 
 namespace isoshell {
+namespace {
+
+constexpr int64_t kPlentyOfVertices = int64_t(1) << 26;  ///< none is placed
+
+/// Of a surface whose walls were grown, as so few vertices could not show its parts, but which is cut along its curves
+/// as it is.
+PreparedSurface without_growth(const PreparedSurface& p, Run& run) {
+  RemeshOptions options = p.options;
+  options.vertices = kPlentyOfVertices;
+  options.edge_length_world.reset();
+  options.features.creases = Features::Creases::off;
+  options.previous.reset();
+  return prepare_surface(host_copy(p.surface), 0, options, run);
+}
+
+}  // namespace
 
 LevelSet level_set(const Prepared& prepared, double band_vox, Context& context) {
   const PreparedSurface& given = PreparedParts::of(prepared);
@@ -17,7 +39,9 @@ LevelSet level_set(const Prepared& prepared, double band_vox, Context& context) 
         "with --union, or labels one region after the other");
   Run run{context, false};
   SheetWhenNeeded sheet(given, run);
-  const PreparedSurface& p = sheet.get();
+  std::optional<PreparedSurface> ungrown;
+  if (given.grown && is_on_own_triangles(given)) ungrown = without_growth(given, run);
+  const PreparedSurface& p = ungrown ? *ungrown : sheet.get();
   const bool may_bridge = !p.surface.topology.closed && p.closing_vox > 0;
   const SheetPart part = p.grown ? SheetPart::alone : may_bridge ? SheetPart::beside : SheetPart::none;
   const LevelSetSurface surface = level_set_surface(p.surface, given.exact.get(), p.sheet, part, context);

@@ -160,7 +160,7 @@ Triangulated triangulate_anyhow(const PreparedSurface& p, SeededMesh& made, Reme
   SheetWhenNeeded sheet(p, run);
   if (!p.cut || made.seeds.fixed.count == 0) return triangulate_on_sheet(sheet.get(), made, report, run);
   const PatchOptions in_patches = patch_options(p, p.cut->seeds, report.coherence.began_warm);
-  if (std::optional<TriangleMesh> mesh = triangulate_patches(p, sheet, made, in_patches, report, run))
+  if (std::optional<TriangleMesh> mesh = triangulate_patches(p, made, in_patches, report, run))
     return {std::move(*mesh)};
   const PreparedSurface& whole = sheet.get();
   if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, run);

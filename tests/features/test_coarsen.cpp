@@ -40,7 +40,7 @@ TEST_CASE("fine triangles that meet once they are rounded are collapsed until no
   WallMesh mesh(cut, all_triangles_of(cut));
   const int64_t before = mesh.vertex_count();
   CHECK(pairs_that_meet(mesh) > 20);
-  collapse_crossings(mesh, cut.longest_edge_q8, context);
+  collapse_crossings(mesh, context);
   CHECK(pairs_that_meet(mesh) == 0);
   CHECK(mesh.vertex_count() > before / 2);
   for (const RegionTriangle& t : mesh.triangles())

@@ -97,6 +97,16 @@ TEST_CASE("mesh files: PLY is single precision exactly while no vertex moves a t
   check_same(read_mesh(folder / "exact.ply"), mesh);
 }
 
+TEST_CASE("mesh files: PLY is double where single precision makes triangles intersect that have room otherwise",
+          "[mesh_file][unit]") {
+  TriangleMesh mesh;
+  mesh.vertices = {{-1, -1, 1}, {1, -1, 1}, {0, 1, 1}, {0, 0, 1 + 4e-8}, {2e-4, 0, 1.5}, {0, 2e-4, 1.5}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  CHECK(needs_double(mesh));  // in single precision the second one stands on the first one
+  mesh.vertices[3].z = 1 + 4e-7;
+  CHECK_FALSE(needs_double(mesh));
+}
+
 TEST_CASE("mesh files: binary STL brings single precision corners back, welded", "[mesh_file][unit]") {
   const TemporaryFolder folder;
   TriangleMesh mesh = mesh_of(shapes::torus(3, 1, 150, 80));

@@ -350,13 +350,13 @@ TEST_CASE("features: what cannot be cut is remeshed without, closed, and the run
 }
 
 TEST_CASE("features: a needle that no crease has room on is meshed without them, each time the same", "[features]") {
-  RemeshOptions options = keeping_creases(300);
+  RemeshOptions options = keeping_creases(150);
   options.closing_vox = 4;
   std::set<uint64_t> digests;
   for (const int threads : {1, 2}) {
     TestContext context;
     context.threads = threads;
-    const RemeshResult result = remesh(shapes::box({0, 0, 0}, {1, 0.002, 0.002}), options, context);
+    const RemeshResult result = remesh(shapes::box({0, 0, 0}, {1, 0.0005, 0.0005}), options, context);
     const FeatureReport& features = result.report.features;
     CHECK(check_mesh(result.mesh).is_closed_manifold());
     CHECK_FALSE(features.kept);

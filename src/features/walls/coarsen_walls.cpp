@@ -6,7 +6,6 @@
 #include "core/watched.h"
 #include "features/angles/widen_angles.h"
 #include "features/walls/coarsen.h"
-#include "features/walls/collapse_crossings.h"
 #include "features/walls/even_out.h"
 #include "features/walls/periodic_sides.h"
 
@@ -14,7 +13,6 @@ namespace isoshell {
 
 void coarsen_walls(WallMesh& mesh, int64_t vertices, const Context& context) {
   run_with_threads(context, [&] {
-    collapse_crossings(mesh, mesh.lookup().cut().longest_edge_q8, context);
     coarsen(mesh, vertices, context);
     even_out(mesh, vertices, context);
   });

@@ -4,79 +4,70 @@
 #include <algorithm>
 #include <queue>
 #include <tuple>
+#include <unordered_set>
 #include <vector>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
+#include "geometry/half_edges.h"
 
 namespace isoshell {
 namespace {
 
-constexpr int64_t kStepsBetweenLooks = 1024;
+constexpr int64_t kStepsBetweenLooks = 64;
 
 class Crossings {
  public:
-  Crossings(WallMesh& mesh, double longest_q8) : mesh_(mesh), longest_sq_q8_(longest_q8 * longest_q8) {}
+  explicit Crossings(WallMesh& mesh) : mesh_(mesh) {}
 
   void collapse(const Context& context) {
     std::vector<uint8_t> meets(mesh_.triangles().size());
     for_each_index(uint32_t(0), uint32_t(meets.size()), [&](uint32_t t) { meets[t] = meets_any(t); });
     for (uint32_t t = 0; t < meets.size(); ++t)
-      if (meets[t]) add(t);
+      if (meets[t]) add_edges_of(t);
     for (int64_t step = 0; !waiting_.empty(); ++step) {
       if (step % kStepsBetweenLooks == 0) check_cancel(context, "features");
-      const Edge shortest = waiting_.top();
+      const auto [length_sq, u, v] = waiting_.top();
       waiting_.pop();
-      collapse(shortest);
+      is_waiting_.erase(edge_key(u, v));
+      if (has_meeting_triangle(u, v) && (collapse(u, v) || collapse(v, u)))
+        for (const uint32_t t : change_.number)
+          if (meets_any(t)) add_edges_of(t);
     }
   }
 
  private:
-  struct Edge {
-    double length_sq;
-    uint32_t u, v, triangle;
-
-    bool operator<(const Edge& o) const {
-      return std::make_tuple(length_sq, u, v, triangle) > std::make_tuple(o.length_sq, o.u, o.v, o.triangle);
-    }
-  };
+  using Edge = std::tuple<double, uint32_t, uint32_t>;  ///< squared length, and the ends, the smaller one first
 
   bool meets_any(uint32_t triangle) const {
     bool meets = false;
     if (!mesh_.triangles()[triangle].is_gone()) mesh_.for_each_met(triangle, [&](uint32_t) { meets = true; });
     return meets;
   }
-  void add(uint32_t triangle) {
+  bool has_meeting_triangle(uint32_t u, uint32_t v) const {
+    const std::vector<uint32_t>& around = mesh_.around(u);
+    return std::any_of(around.begin(), around.end(),
+                       [&](uint32_t t) { return mesh_.triangles()[t].has(v) && meets_any(t); });
+  }
+  void add_edges_of(uint32_t triangle) {
     const auto& corner = mesh_.triangles()[triangle].corner;
     for (size_t i = 0; i < 3; ++i) {
-      const uint32_t u = std::min(corner[i], corner[(i + 1) % 3]), v = std::max(corner[i], corner[(i + 1) % 3]);
-      const double length_sq = distance_sq(mesh_.at(u), mesh_.at(v));
-      if (length_sq < longest_sq_q8_) waiting_.push({length_sq, u, v, triangle});
+      const auto [u, v] = std::minmax(corner[i], corner[(i + 1) % 3]);
+      if (is_waiting_.insert(edge_key(u, v)).second) waiting_.push({distance_sq(mesh_.at(u), mesh_.at(v)), u, v});
     }
   }
-  void collapse(const Edge& edge) {
-    const RegionTriangle& t = mesh_.triangles()[edge.triangle];
-    if (t.is_gone() || !t.has(edge.u) || !t.has(edge.v) || !meets_any(edge.triangle)) return;
-    uint32_t into = edge.v;
-    if (!mesh_.collapse(edge.u, edge.v, change_, WallMesh::Shapes::any)) {
-      into = edge.u;
-      if (!mesh_.collapse(edge.v, edge.u, change_, WallMesh::Shapes::any)) return;
-    }
-    const std::vector<uint32_t> around = mesh_.around(into);
-    for (const uint32_t s : around)
-      if (meets_any(s)) add(s);
-  }
+  bool collapse(uint32_t gone, uint32_t into) { return mesh_.collapse(gone, into, change_, WallMesh::Shapes::any); }
 
   WallMesh& mesh_;
-  double longest_sq_q8_;
-  std::priority_queue<Edge> waiting_;
+  std::priority_queue<Edge, std::vector<Edge>, std::greater<>> waiting_;
+  std::unordered_set<uint64_t> is_waiting_;  ///< by edge_key
   MeshChange change_;
 };
 
 }  // namespace
 
-void collapse_crossings(WallMesh& mesh, double longest_q8, const Context& context) {
-  Crossings(mesh, longest_q8).collapse(context);
+void collapse_crossings(WallMesh& mesh, const Context& context) {
+  run_with_threads(context, [&] { Crossings(mesh).collapse(context); });
 }
 
 }  // namespace isoshell

@@ -5,10 +5,10 @@
 
 namespace isoshell {
 
-/// Collapses edges of triangles that meet others, the shortest ones first, as long as they are shorter than
-/// `longest_q8`: where a surface is parted by less than a step of the lattice, its fine triangles meet once they are
-/// rounded, and would go on doing so as they become coarser. What stays is left as it is. Cost: a look at all
-/// triangles for those that meet, and one around each collapse.
-void collapse_crossings(WallMesh& mesh, double longest_q8, const Context& context);
+/// Collapses edges of triangles that meet others, the shortest ones first: where sheets of a surface are parted by less
+/// than a step of the lattice, their fine triangles meet once they are rounded, and would go on doing so as they become
+/// coarser. The mesh may have few vertices there afterwards; what cannot be collapsed goes on meeting. Throws:
+/// interrupted. Cost: a look at all triangles for those that meet, and for each collapse one at those that it changes.
+void collapse_crossings(WallMesh& mesh, const Context& context);
 
 }  // namespace isoshell

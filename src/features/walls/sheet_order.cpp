@@ -36,15 +36,27 @@ class EdgeSheets {
     });
     if (sheets_.size() < 3) return true;
     std::sort(sheets_.begin(), sheets_.end(), [](const Sheet& a, const Sheet& b) { return a.angle < b.angle; });
-    for (size_t i = 0; i < sheets_.size(); ++i) {
-      const Sheet &here = sheets_[i], &next = sheets_[(i + 1) % sheets_.size()];
-      const double way = next.angle - here.angle + (i + 1 < sheets_.size() ? 0 : 2 * std::acos(-1.));
-      if (way > kOnEachOther && here.behind != next.before) return false;
+    // Of sheets that lie on each other the next one is any that follows; a sheet that lies on no other comes first.
+    const size_t count = sheets_.size();
+    size_t first = 0;
+    while (first < count && (is_tie(first) || is_tie((first + count - 1) % count))) ++first;
+    if (first == count) return true;
+    std::rotate(sheets_.begin(), sheets_.begin() + int64_t(first), sheets_.end());
+    for (size_t i = 1; i < count; ++i) {
+      for (size_t j = i; sheets_[i].before != sheets_[i - 1].behind && j + 1 < count && is_tie(j); ++j)
+        std::swap(sheets_[i], sheets_[j + 1]);
+      if (sheets_[i].before != sheets_[i - 1].behind) return false;
     }
-    return true;
+    return sheets_.back().behind == sheets_.front().before;
   }
 
  private:
+  /// Whether a sheet lies on the next one.
+  bool is_tie(size_t i) const {
+    const bool is_last = i + 1 == sheets_.size();
+    const double next = is_last ? sheets_.front().angle + 2 * std::acos(-1.) : sheets_[i + 1].angle;
+    return next - sheets_[i].angle <= kOnEachOther;
+  }
   void add(const RegionTriangle& t) {
     for (size_t i = 0; i < 3; ++i) {
       const uint32_t a = t.corner[i], b = t.corner[(i + 1) % 3];

@@ -139,7 +139,7 @@ bool WallMesh::split(uint32_t u, uint32_t v, const RegionVertex& middle, MeshCha
   return EditableMesh::split(u, v, middle, change, [&] {
     for (size_t i = 0; i < change.made.size(); ++i)
       if (!may_replace(change.made[i], triangles()[change.replaced[i / 2]], 0)) return false;
-    return true;
+    return keeps_sheets_in_order(*this, change, labels_);
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/parallel_ranges.h"
 #include "geometry/world_vector.h"
+#include "isoshell/mesh_census.h"
 #include "isoshell/readable.h"
 
 namespace isoshell {
@@ -81,24 +82,44 @@ double largest_move_world(const TriangleMesh& mesh, const Placement& placement) 
   return joined_over(mesh.vertices.size(), 0.0, moved_at, kLarger);
 }
 
-bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset) {
+namespace {
+
+/// How far single precision moves a corner of a triangle, at most, over its least height.
+double largest_move_of_heights(const TriangleMesh& mesh, const WorldPoint& offset) {
   const double scale = scale_of(mesh);
   const auto scaled_sq = [&](const WorldPoint& a, const WorldPoint& b) { return length_sq(scale * (b - a)); };
   const auto moved_sq = [&](uint32_t v) {
     const WorldPoint p = mesh.vertices[v] - offset;
     return scaled_sq(point_in_single(p), p);
   };
-  const auto is_moved_too_far = [&](size_t i) -> int64_t {
+  const auto move_sq = [&](size_t i) {
     const auto& t = mesh.triangles[i];
     const WorldPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     const double edge_sq[] = {scaled_sq(a, b), scaled_sq(b, c), scaled_sq(c, a)};
     const auto [least, most] = std::minmax_element(std::begin(edge_sq), std::end(edge_sq));
     const double area_sq = length_sq(cross(scale * (b - a), scale * (c - a)));
     const double height_sq = area_sq > 0 ? area_sq / *most : *least;
-    return std::max({moved_sq(t[0]), moved_sq(t[1]), moved_sq(t[2])}) * 1e6 > height_sq;
+    const double moved = std::max({moved_sq(t[0]), moved_sq(t[1]), moved_sq(t[2])});
+    return moved == 0 ? 0 : moved / height_sq;  // infinite for corners at one place that move
   };
-  return joined_over(mesh.triangles.size(), int64_t(0), is_moved_too_far, std::plus<int64_t>()) > 0 ||
-         count_lost_triangles(mesh, {NumberType::f32, offset}) > 0;
+  return std::sqrt(joined_over(mesh.triangles.size(), 0.0, move_sq, kLarger));
+}
+
+int64_t intersecting_in_single(const TriangleMesh& mesh, const WorldPoint& offset) {
+  TriangleMesh in_file;
+  for (const WorldPoint& p : mesh.vertices) in_file.vertices.push_back(point_in_single(p - offset));
+  in_file.triangles = mesh.triangles;
+  Context context;
+  return count_intersecting_pairs(in_file, context);
+}
+
+}  // namespace
+
+bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset) {
+  constexpr double kSurely = 1e-3, kPerhaps = 1e-4;
+  const double move = largest_move_of_heights(mesh, offset);
+  return move > kSurely || count_lost_triangles(mesh, {NumberType::f32, offset}) > 0 ||
+         (move > kPerhaps && intersecting_in_single(mesh, offset) > 0);
 }
 
 Placement place_in_doubles(const TriangleMesh&, const WorldPoint& offset) { return {NumberType::f64, offset}; }

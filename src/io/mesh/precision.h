@@ -37,7 +37,9 @@ inline bool is_origin(const WorldPoint& p) { return p.x == 0 && p.y == 0 && p.z 
 std::string offset_note(const Placement& placement);
 
 /// True when single precision would move a corner of a triangle, less the offset, by more than a thousandth of its
-/// least height, which may make triangles intersect, or lose a triangle. Triangles without area count by their edges.
+/// least height, or lose a triangle, or by more than a ten-thousandth where triangles intersect then. Triangles without
+/// area count by their edges. Cost: a pass over the triangles; where needles are near to that, as
+/// count_intersecting_pairs().
 bool needs_double(const TriangleMesh& mesh, const WorldPoint& offset = {0, 0, 0});
 
 /// Triangles that lose their area there, or tilt by more than 60 degrees.

@@ -21,11 +21,11 @@
 namespace isoshell {
 namespace {
 
-constexpr double kMostOnCurves = 0.5;    ///< of the vertices, where creases are left out
 constexpr double kNearMost = 1.1;        ///< times as many are no reason to look again
 constexpr int kMostLooks = 3;            ///< for creases that fit; edges are shorter where curves face others, once cut
 constexpr double kMoreThanAsked = .08;   ///< vertices that lengths ask for, over those that there are
 constexpr double kFewestByLength = 0.4;  ///< of the vertices: edges are 1 / sqrt(.4) times as long as without curves
+constexpr double kLeastRate = 1. / 64;   ///< at which curves have fewer seeds as lengths grow: a segment is whole
 constexpr int kMostCuts = 3;             ///< for lengths that leave curves and patches their share
 
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
@@ -54,8 +54,10 @@ std::string obstacle(const PreparedSurface& p, const FeatureMesh& mesh, const Cu
     return "the surface has holes, edges of more than two faces, or faces that disagree about the outside";
   if (six_volumes(mesh) < 0) return "the faces look inwards";
   if (p.grown.only_flaps) return "walls without thickness had to be grown";
-  if (p.grown && !has_room_for_parts(p.target_of_input.vertices, input)) return "walls had to be grown";
-  if (p.options.closing_vox.value_or(0) > 0 || p.options.closing_world.value_or(0) > 0) return "gaps were closed";
+  if (p.grown && (is_needle(p) || wants_lengths(p.options) || !has_room_for_parts(p.target_of_input.vertices, input)))
+    return "walls had to be grown";
+  if (!p.grown ? p.closing_vox > 0 : p.options.closing_vox.value_or(0) > 0 || p.options.closing_world.value_or(0) > 0)
+    return "gaps were closed";
   if (p.own_faces_meet) return "faces are so narrow that they meet once they are rounded";
   return "";
 }
@@ -77,7 +79,7 @@ SeparatedMesh separated(const FeatureMesh& mesh, const CurveNetwork& network) {
 
 /// The borders of the sheet are no part of a surface that is open, nor what was grown of one that is not.
 int64_t vertices_of(const PreparedSurface& p, bool is_open) {
-  return (is_open || p.grown) && !p.vertices_of_lengths ? p.target_of_input.vertices : p.target.vertices;
+  return (is_open && !p.vertices_of_lengths) || p.grown ? p.target_of_input.vertices : p.target.vertices;
 }
 
 /// An estimate with the fine surface, which has about 21 vertices a seed. Throws: NoRoom where that is above the limit.
@@ -132,21 +134,26 @@ struct CutPlan {
 
 /// Lengths are such that triangles fill the area with the number of vertices, but corners and short curves between them
 /// may take more than that. Then all lengths are longer, as much as it takes for curves and the patches between them to
-/// share the vertices evenly, or as near as some cuts come. Throws: NoRoom where they would be too long.
+/// share the vertices evenly, or as near as some cuts come: at first a vertex fewer by length is taken to be one fewer
+/// of the result, then as many as it was. Throws: NoRoom where they would be too long.
 std::shared_ptr<CutSurface> cut_evenly(const CutPlan& plan, const CurveNetwork& network, Context& context) {
   CutOptions how = plan.how;
-  const auto vertices = double(how.vertices);
+  const int64_t vertices = how.vertices, fewest = std::llround(std::ceil(kFewestByLength * double(vertices)));
+  double before = 0, gone = 0;  // the surplus of the cut before, and by how many vertices that was cut for more
   for (int cuts = 1;; ++cuts) {
     auto cut = std::make_shared<CutSurface>(cut_surface(plan.mesh, network, plan.frame, how, context));
     if (vertices == 0) return cut;
-    cut->seeds = plan.how.vertices;
-    const double surplus = FreeSeeds(*cut).by_length(seeds_on_curves(*cut, 0)) - vertices;
-    if (surplus <= kMoreThanAsked * vertices) return cut;
-    how.vertices -= std::llround(surplus);
-    if (double(how.vertices) < kFewestByLength * vertices)
+    cut->seeds = vertices;
+    const double surplus = FreeSeeds(*cut).by_length(seeds_on_curves(*cut, 0)) - double(vertices);
+    if (surplus <= kMoreThanAsked * double(vertices)) return cut;
+    if (how.vertices == fewest)
       throw NoRoom("features", "curves, and the patches between them, take more than " + std::to_string(cut->seeds) +
                                    " vertices; use more vertices, or a higher angle from which on edges are features");
     if (cuts == kMostCuts) return cut;
+    const double rate = cuts == 1 ? 1 : std::clamp((before - surplus) / gone, kLeastRate, 1.);
+    before = surplus;
+    gone = std::min(std::round(surplus / rate), double(how.vertices - fewest));
+    how.vertices -= int64_t(gone);
     how.edge_length_world = edge_length_for(plan.mesh, network, how.vertices);
   }
 }
@@ -173,9 +180,9 @@ CutAlongCurves make_cut(const CutPlan& plan, const CurveNetwork& network, CutSou
 CutAlongCurves cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, const CutSource& source,
                                const FeatureReport& all_found, Context& context) {
   const FeatureMesh& mesh = plan.mesh;
-  const double most = std::max(1., kMostOnCurves * double(plan.seeds));
+  const double most = std::max(1., (1 - kFewestByLength) * double(plan.seeds));
   CurveOptions within_budget = plan.curves;
-  within_budget.edge_length_world = plan.how.edge_length_world;
+  within_budget.edge_length_world = plan.how.edge_length_world / std::sqrt(kFewestByLength);
   within_budget.most_vertices = most;
   CutAlongCurves cut;
   std::vector<uint64_t> kept_before;
@@ -195,11 +202,14 @@ CutAlongCurves cut_along_fewer(const CutPlan& plan, const CurveNetwork& all, con
       cut = make_cut(plan, network, std::move(fewer), std::move(found), context);
       return std::string();
     };
-    if (look == 1) make();
-    if (look > 1 && !failure_reason(make).empty()) break;  // what was cut before stays
+    const bool is_last = look == kMostLooks;
+    if (is_last && !cut.surface)
+      make();
+    else if (!failure_reason(make).empty() && cut.surface)
+      break;  // what was cut before stays
     const auto vertices = double(cut.features.vertices);
-    if (vertices <= kNearMost * most) break;
-    within_budget.most_vertices *= most / vertices;
+    if (cut.surface && vertices <= kNearMost * most) break;
+    within_budget.most_vertices *= cut.surface ? most / vertices : 1 - kFewestByLength;
   }
   return cut;
 }

@@ -22,6 +22,8 @@ class NewCrossings {
  public:
   NewCrossings(const PreparedSurface& p, const CutSurface& cut, Context& context);
 
+  /// Whether any may.
+  bool may_be_old() const { return may_be_old_; }
   /// All pairs of triangles that intersect. `joined`: as of crossing_pairs.
   TrianglePairs all(const DualMesh& mesh, View<const uint32_t> joined) const;
   /// Of these the ones that must not.

@@ -228,8 +228,8 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, Run& run) {
   });
 }
 
-std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetWhenNeeded& sheet, SeededMesh& made,
-                                                PatchOptions in_patches, RemeshReport& report, Run& run) {
+std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SeededMesh& made, PatchOptions in_patches,
+                                                RemeshReport& report, Run& run) {
   FeatureReport& features = report.features;
   MeshOfPatches made_here = mesh_of_patches(p, features.border_loops, made, in_patches, run);
   if (!made_here.why_not.empty() && std::exchange(in_patches.previous, nullptr)) {
@@ -253,16 +253,16 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetW
   report.count.why = "its curves need them, or leave no room for more";
   warn_of_left_alone(made_here.joined.left_alone, run);
   if (cut.source->is_sheet) {
-    const PreparedSurface& whole = sheet.get();
-    report.grid = whole.report.grid;
-    report.sheet = whole.report.sheet;
-    const std::vector<uint32_t> at = run_with_threads(run.context, [&] { return nearest_of_sheet(whole.sheet, mesh); });
-    flag_gaps(whole, {at.data(), int64_t(at.size())}, mesh, report.gaps);
+    const std::vector<uint32_t> at = run_with_threads(run.context, [&] { return nearest_of_sheet(p.sheet, mesh); });
+    flag_gaps(p, {at.data(), int64_t(at.size())}, mesh, report.gaps);
     run.warn("curves are kept on the sheet, not on the input's own triangles: " + features.on_sheet);
-    if (is_on_own_triangles(p)) warn_of_topology(whole, p.surface.topology, run);
   } else {
     report.grid.closing_vox = report.grid.grown_vox = 0;  // those of the sheet, which is not used
     report.sheet.agrees = report.sheet.is_compared;
+    if (p.grown) {  // the sheet is that of another solid
+      report.sheet.topology.components = p.surface.topology.components;
+      report.sheet.topology.genus = p.surface.topology.genus;
+    }
     report.sheet.topology.bridged_vertices = 0;
     flag_caps(p, mesh, report.gaps);
   }

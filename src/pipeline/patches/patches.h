@@ -10,8 +10,6 @@
 
 namespace isoshell {
 
-class SheetWhenNeeded;
-
 /// What a surface comes from.
 struct PatchSource {
   const TriangleSoup* soup = nullptr;                      ///< null: not known, as in a run that resumes
@@ -46,11 +44,9 @@ RelaxedSeeds relax_in_patches(const CutSurface& cut, const PatchOptions& options
 
 /// The mesh of the patches, joined along their curves; its vertices are as many as seeds were relaxed, each place of a
 /// curve counted once, where that is possible. Where triangles intersect, cells are simplified from the fine
-/// triangles instead. Where those meet themselves, or so few vertices cannot hold the curves, the same is tried on the
-/// sheet, with the curves laid onto it. None where that fails, too: cells are no disks, or patches touch along edges
-/// that are on no curve: report.features says so. With borders that are kept triangles may intersect where the input's
-/// do.
-std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SheetWhenNeeded& sheet, SeededMesh& made,
-                                                PatchOptions in_patches, RemeshReport& report, Run& run);
+/// triangles instead. None where that fails, too: these go on intersecting, or patches touch along edges that are on no
+/// curve: report.features says so. With borders that are kept triangles may intersect where the input's do.
+std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, SeededMesh& made, PatchOptions in_patches,
+                                                RemeshReport& report, Run& run);
 
 }  // namespace isoshell

@@ -7,6 +7,7 @@
 
 #include "features/cutting/cut_piece.h"
 #include "features/walls/coarsen_walls.h"
+#include "features/walls/collapse_crossings.h"
 #include "features/walls/open_mesh.h"
 #include "pipeline/defects/inverted_regions.h"
 #include "pipeline/defects/patch_defects.h"
@@ -52,7 +53,10 @@ std::optional<JoinedPatches> simplify_patches(WallMesh mesh, const PatchOptions&
                                               OptimizeReport& sum, Run& run) {
   const JoinOptions join = join_options(options);
   const std::shared_ptr<const CutLookup> lookup = mesh.shared_lookup();
-  run.timed("coarsen", [&] { coarsen_walls(mesh, join.vertices, run.context); });
+  run.timed("coarsen", [&] {
+    if (!check.crossings().may_be_old()) collapse_crossings(mesh, run.context);
+    coarsen_walls(mesh, join.vertices, run.context);
+  });
   PatchMesh made(lookup, std::move(mesh), join);
   OptimizeReport done;
   if (check.is_valid(made.joined(), done))  // otherwise triangles intersect before anything is optimised
