@@ -19,7 +19,8 @@ namespace isoshell {
 MemoryGrid read_grid(const openvdb::GridBase& grid);
 
 /// The grid that save_level_set() writes: in world units, from voxel centres, with a sign everywhere. Of a level set on
-/// a device it takes a copy. Cost: linear in the voxels, on all threads. Throws: usage where distances are missing.
+/// a device it takes a copy. Cost: linear in the voxels, on all threads. Throws: usage where distances are
+/// missing; and as check_level_set_write() does.
 openvdb::FloatGrid::Ptr to_openvdb(const LevelSet& level_set, const LevelSetWriteOptions& options = {});
 
 /// A shell as the stage file has it: the FloatGrid "shell_distance", from voxel centre to voxel centre in world units,

@@ -6,8 +6,10 @@
 
 #include "isoshell/io/vdb_file.h"
 #include "isoshell/io/volume_file.h"
+#include "isoshell/openvdb.h"
 #include "isoshell/remesh.h"
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/shapes.h"
 #include "support/temporary_file.h"
 #include "support/test_context.h"
@@ -60,6 +62,40 @@ TEST_CASE("level set file: OpenVDB reads a level set in world units with a sign 
   options.overwrite = true;
   save_level_set(file.path, set, options);
   CHECK(read_grid(file.path, "halves")->saveFloatAsHalf());
+}
+
+TEST_CASE("level set file: voxels of any size have a place in it", "[level_set][volume]") {
+  const TemporaryFile file("small.vdb");
+  LevelSet set = level_set_of(shapes::sphere({1, 2, 3}, 5, 24), 3);
+  for (const double voxel_size : {1e-5, 1e-9}) {
+    set.frame.voxel_size = voxel_size;
+    set.frame.origin = {-32 * voxel_size, 0, 32 * voxel_size};
+    save_level_set(file.path, set, {"surface", false, true});
+    VolumeInfo info;
+    const TriangleSoup soup = read_volume(file.path, {}, info);
+    CHECK(info.voxel_size_world == Approx(voxel_size));
+    CHECK(soup.triangles.size() > 1000);
+    CHECK(to_openvdb(set)->voxelSize()[0] == Approx(voxel_size));
+  }
+}
+
+TEST_CASE("level set file: a band that halves do not hold is refused", "[level_set][volume]") {
+  const TemporaryFile file("halves.vdb");
+  LevelSet set = level_set_of(shapes::sphere({1, 2, 3}, 5, 24), 3);
+  const auto save_with = [&](double voxel_size, bool as_half) {
+    set.frame.voxel_size = voxel_size;
+    save_level_set(file.path, set, {"surface", as_half, true});
+  };
+  for (const double wrong : {22000., 2e-5}) {
+    CHECK(contains(message_of(ErrorCode::usage, [&] { save_with(wrong, true); }), "leave out --level-set-half"));
+    save_with(wrong, false);
+  }
+  for (const double right : {21800., 2.1e-5}) {
+    save_with(right, true);
+    const openvdb::FloatGrid::Ptr grid = read_grid(file.path, "surface");
+    for (auto value = grid->cbeginValueOn(); value; ++value) REQUIRE(std::abs(*value) <= grid->background());
+    CHECK(double(grid->background()) == Approx(3 * right).epsilon(1. / 2048));
+  }
 }
 
 TEST_CASE("level set file: a run reads its surface again", "[level_set][volume]") {

@@ -41,8 +41,9 @@ struct SparseVolume {
 /// A copy of the values as a grid. `name` is what messages call the volume. Cost: a sort of the voxels, and 2 KiB for
 /// each block of 8^3 that has one. Throws: usage for no voxel, another number of values than of voxels, a voxel that is
 /// given twice or 2^30 or farther from the origin, an infinite value, a background that is not finite, of a level set
-/// one that is not above 0 or no value that is 0 or above, and steps that span no volume; out_of_memory where the grid
-/// would take more than the limit in bytes (0: none); unreadable_input in a build without OpenVDB.
+/// one that is not above 0 or no value that is 0 or above, and steps that span no volume or have no inverse;
+/// out_of_memory where the grid would take more than the limit in bytes (0: none); unreadable_input in a build without
+/// OpenVDB.
 MemoryGrid sparse_grid(const SparseVolume& volume, const std::string& name, int64_t memory_limit_bytes = 0);
 
 /// A grid of NanoVDB in its bytes, which start at a multiple of 32 in host memory and outlive all copies of the result.
@@ -61,12 +62,14 @@ Buffer<std::byte> nano_level_set(const LevelSet& level_set, const std::string& n
 Input input_of(const MemoryGrid& grid, const std::string& name, const InputRequest& request, const Context& context,
                const Tell& tell = {});
 
-/// The grid's values for InputRequest::given_grids, under a name. Throws: usage for a grid of a type that is not
-/// sampled, as those of NanoVDB (nanoToOpenVDB() converts them).
+/// The grid's values for InputRequest::given_grids, under a name. Shares the grid. Cost: a hash of all its values, on
+/// one thread. Throws: usage for a grid of a type that is not sampled, as those of NanoVDB (nanoToOpenVDB() converts
+/// them); unreadable_input in a build without OpenVDB.
 std::shared_ptr<const GridField> grid_field(const MemoryGrid& grid, const std::string& name);
 
 /// What read_input() gives of a file of these bytes, which are those of a .vdb or .nvdb file, of a stream that OpenVDB
-/// wrote, or of a grid of NanoVDB in memory. Borrows them for the call. Throws: as read_input() does.
+/// wrote, or of a handle of NanoVDB in memory, of whose grids the request names one where there are several. Borrows
+/// them for the call; of a grid of NanoVDB it takes a copy. Throws: as read_input() does.
 Input input_of_vdb(View<const char> bytes, const std::string& name, const InputRequest& request, const Context& context,
                    const Tell& tell = {});
 

@@ -69,13 +69,18 @@ void save_preview(const std::string& path, const LatticeFrame& frame, const Shel
 
 struct LevelSetWriteOptions {
   std::string name = "surface";  ///< of the grid
-  bool as_half = false;          ///< values in 16 bits
+  bool as_half = false;          ///< values in 16 bits, to 1/2048 of the band or better
   bool overwrite = false;        ///< replace an existing file
 };
 
 /// Writes a level set that every program opens: a float grid of that class, in world units, from voxel centres;
-/// inactive voxels inside have the background's negative. Throws as save_shell.
+/// inactive voxels inside have the background's negative. Throws: usage where a distance is missing; and as
+/// check_level_set_write() and save_shell do.
 void save_level_set(const std::string& path, const LevelSet& level_set, const LevelSetWriteOptions& options = {});
+
+/// Throws: usage where values of 16 bits are asked for and do not hold the band: their largest number is 65504, and
+/// below a band of 2^-14 world units they are coarser than 1/2048 of it.
+void check_level_set_write(const LevelSet& level_set, const LevelSetWriteOptions& options);
 
 /// Whether this is a file that save_shell or save_voronoi wrote. Cost: the first bytes of the file. Never throws; a
 /// file that cannot be read is none.

@@ -8,23 +8,9 @@
 #include "io/openvdb/grid_map.h"
 #include "io/openvdb/vdb_grids.h"
 #include "io/openvdb/vdb_stream.h"
-#include "isoshell/error.h"
 #include "isoshell/io/memory_input.h"
 
 namespace isoshell {
-
-/// Throws: usage for steps that span no volume; `name` is what the message calls the volume.
-inline openvdb::math::Transform::Ptr transform_of(const DenseVolume& volume, const std::string& name) {
-  try {
-    if (is_invertible(lattice_map(volume.step_world, volume.origin_world)))
-      return transform_of(volume.step_world, volume.origin_world);
-  } catch (const openvdb::Exception&) {
-  }
-  throw Error(ErrorCode::usage, "arguments",
-              name +
-                  ": its steps from value to value span no volume, or so little that they have no inverse; give "
-                  "three finite ones that do");
-}
 
 inline float value_of(const DenseVolume& volume, int64_t i, int64_t j, int64_t k) {
   return volume.values[i * volume.stride[0] + j * volume.stride[1] + k * volume.stride[2]];
@@ -37,7 +23,7 @@ typename Grid::Ptr dense_grid(const DenseVolume& lattice, const std::string& nam
   using Value = typename Grid::ValueType;
   initialize_openvdb();
   auto grid = new_vdb_grid<Grid>(name.c_str(), Value(0));
-  grid->setTransform(transform_of(lattice, name));
+  grid->setTransform(transform_of(lattice.step_world, lattice.origin_world, name));
   auto voxels = grid->getAccessor();
   for (int64_t i = 0; i < lattice.size[0]; ++i)
     for (int64_t j = 0; j < lattice.size[1]; ++j)

@@ -30,10 +30,11 @@ void check_size(const std::string& path, const LabelVolume& volume) {
 
 openvdb::math::Transform::Ptr transform_of(const std::string& path, const LabelVolume& volume) {
   try {
-    return transform_of(volume.step_world, volume.origin_world);
+    if (is_invertible(lattice_map(volume.step_world, volume.origin_world)))
+      return transform_of(volume.step_world, volume.origin_world);
   } catch (const openvdb::Exception&) {
-    refuse_use(path, "a .vdb file cannot hold steps that span so little or no volume; scale them up");
   }
+  refuse_use(path, "a .vdb file cannot hold steps that span so little or no volume; scale them up");
 }
 
 /// Active voxels are those of the array, from (0, 0, 0) on.

@@ -43,6 +43,7 @@ void check(const LevelSet& level_set) {
 void save_level_set(const std::string& path, const LevelSet& level_set_anywhere, const LevelSetWriteOptions& options) {
   const OnHost<LevelSet> level_set(level_set_anywhere);
   check(*level_set);
+  check_level_set_write(*level_set, options);
   initialize_openvdb();
   openvdb::MetaMap meta;
   meta.insertMeta(vdb_format::kKeyCreator, openvdb::StringMetadata(vdb_format::kCreator));
@@ -52,6 +53,7 @@ void save_level_set(const std::string& path, const LevelSet& level_set_anywhere,
 openvdb::FloatGrid::Ptr to_openvdb(const LevelSet& level_set_anywhere, const LevelSetWriteOptions& options) {
   const OnHost<LevelSet> level_set(level_set_anywhere);
   check(*level_set);
+  check_level_set_write(*level_set, options);
   initialize_openvdb();
   return grid_of(*level_set, options);
 }

@@ -211,7 +211,7 @@ MemoryGrid read_grid(const openvdb::GridBase& grid) {
 MemoryGrid sparse_grid(const SparseVolume& volume, const std::string& name, int64_t memory_limit_bytes) {
   initialize_openvdb();
   const VdbFloatGrid::Ptr grid = SparseGrid(volume, name).made(memory_limit_bytes);
-  grid->setTransform(transform_of(volume.step_world, volume.origin_world));
+  grid->setTransform(transform_of(volume.step_world, volume.origin_world, name));
   return held(grid, lattice_map(volume.step_world, volume.origin_world));
 }
 

@@ -5,10 +5,12 @@
 #include <openvdb/openvdb.h>
 
 #include <cstring>
+#include <sstream>
 
 #include "core/parallel_ranges.h"
 #include "io/bytes/memory_stream.h"
 #include "io/bytes/output_file.h"
+#include "io/openvdb/grid_map.h"
 #include "io/vdb/vdb_cursor.h"
 #include "io/vdb/vdb_layout.h"
 #include "isoshell/error.h"
@@ -63,11 +65,35 @@ std::string metadata_bytes(const VdbGridSpan& grid) {
   return bytes + raw(std::string("is_saved_as_half_float")) + raw(std::string("bool")) + raw(std::string(1, half));
 }
 
+/// Whether the map is one of scales and a translation that OpenVDB reads and writes, but does not copy.
+bool is_too_small(const openvdb::math::MapBase& map) {
+  using namespace openvdb::math;
+  constexpr double kLeastCopied = 1e-14;  // above the 3e-15 that it says, by the rounding of a product
+  return (map.isType<UniformScaleTranslateMap>() || map.isType<ScaleTranslateMap>()) &&
+         map.voxelSize().x() * map.voxelSize().y() * map.voxelSize().z() < kLeastCopied;
+}
+
+/// The file of one grid. OpenVDB copies its transform to write it: small voxels are put in the place of large ones.
+std::vector<char> bytes_of(const StreamArchive& archive, const openvdb::GridBase::Ptr& grid) {
+  const openvdb::math::Transform::Ptr transform = grid->transformPtr();
+  const auto map = transform->baseMap();
+  if (!is_too_small(*map)) return archive.bytes({grid}, {});
+  const bool is_uniform = map->isType<openvdb::math::UniformScaleTranslateMap>();
+  grid->setTransform(transform_of_scales(is_uniform ? openvdb::Vec3d(1) : openvdb::Vec3d(1, 2, 3), openvdb::Vec3d(1)));
+  std::vector<char> file = archive.bytes({grid}, {});
+  std::ostringstream out;
+  transform->write(out);
+  const std::string bytes = out.str();
+  const int64_t at = read_vdb_layout("grid", {file.data(), int64_t(file.size())}).grids.at(0).transform;
+  std::memcpy(file.data() + at, bytes.data(), bytes.size());
+  return file;
+}
+
 std::vector<char> join_grids(const std::vector<std::function<openvdb::GridBase::Ptr()>>& makers,
                              const openvdb::MetaMap& meta) {
   const StreamArchive archive;
   std::vector<std::vector<char>> parts(makers.size());
-  for_each_index(size_t(0), makers.size(), [&](size_t i) { parts[i] = archive.bytes({makers[i]()}, {}); });
+  for_each_index(size_t(0), makers.size(), [&](size_t i) { parts[i] = bytes_of(archive, makers[i]()); });
 
   std::vector<char> file = archive.bytes({}, meta);
   const auto count = static_cast<uint32_t>(parts.size());
@@ -89,10 +115,9 @@ std::vector<char> join_grids(const std::vector<std::function<openvdb::GridBase::
 void initialize_openvdb() { openvdb::initialize(); }
 
 openvdb::math::Transform::Ptr lattice_transform(const LatticeFrame& frame) {
-  auto transform = openvdb::math::Transform::createLinearTransform(frame.voxel_size);
   const double half = frame.voxel_size / 2;
-  transform->postTranslate({frame.origin.x + half, frame.origin.y + half, frame.origin.z + half});
-  return transform;
+  return transform_of_scales(openvdb::Vec3d(frame.voxel_size),
+                             {frame.origin.x + half, frame.origin.y + half, frame.origin.z + half});
 }
 
 void write_vdb_file(const std::string& path, const std::vector<std::function<openvdb::GridBase::Ptr()>>& makers,
@@ -104,6 +129,8 @@ void write_vdb_file(const std::string& path, const std::vector<std::function<ope
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::out_of_memory, "write",
                 path + ": out of memory while packing its grids; lower the resolution");
+  } catch (const openvdb::Exception& error) {
+    throw Error(ErrorCode::unwritable_output, "write", path + ": OpenVDB does not write its grids: " + error.what());
   }
   out.commit();
 }

@@ -1,4 +1,4 @@
-// What needs no OpenVDB: recognising a stage file.
+// What needs no OpenVDB: recognising a stage file, and what values of 16 bits hold.
 #include "isoshell/io/vdb_file.h"
 
 #include <filesystem>
@@ -9,8 +9,24 @@
 #include "io/vdb/vdb_format.h"
 #include "io/vdb/vdb_layout.h"
 #include "isoshell/error.h"
+#include "isoshell/readable.h"
 
 namespace isoshell {
+namespace {
+
+// Of numbers of 16 bits. Below the least one that has all its bits, numbers are 2^-24 apart.
+constexpr double kLargestHalf = 65504, kLeastWholeHalf = 1. / 16384;
+
+}  // namespace
+
+void check_level_set_write(const LevelSet& level_set, const LevelSetWriteOptions& options) {
+  const double band_world = level_set.band_vox * level_set.frame.voxel_size;
+  if (!options.as_half || (band_world >= kLeastWholeHalf && band_world <= kLargestHalf)) return;
+  throw Error(ErrorCode::usage, "write",
+              "the level set's band is " + readable_length(band_world) +
+                  " world units wide, and values of 16 bits hold bands from 6.1e-05 to 65504; leave out "
+                  "--level-set-half, or scale the input");
+}
 
 Buffer<char> read_file_start(const std::string& path, int64_t max_bytes) {
   std::error_code failed;
