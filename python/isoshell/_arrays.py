@@ -38,7 +38,8 @@ def floats_or_nan(argument: str, value: Any) -> np.ndarray[Any, Any]:
     import numpy as np
 
     array, mask = masked_array_of(argument, value)
-    floats = array.astype(np.float32, copy=False)
+    with np.errstate(over="ignore"):  # what is beyond single precision becomes infinite, and is refused as that
+        floats = array.astype(np.float32, copy=False)
     return floats if mask is None else np.where(mask, np.float32(np.nan), floats)
 
 

@@ -81,7 +81,7 @@ def remesh(source: SourceLike, *faces: Any, output: Optional[Union[str, os.PathL
     keywords_of(given)  # what cannot be is refused before anything is read
     source = opened(source, given)
     keywords = keywords_for(source, given)
-    start = source_of(source, sizing, grids)
+    start = source_of(source, sizing, grids, place.max_bytes)
     made = _isoshell.remesh(place, start, keywords, "" if is_ours else target, measure_all, keep_level_set, progress,
                             listener(given))
     result = result_of(made, start, keywords, source, volumes)
@@ -182,7 +182,7 @@ def begun(source: SourceLike, faces: tuple[Any, ...], context: Optional[Context]
     place, progress = settle(context, given)
     source = opened(with_faces(source, faces), given)
     keywords = keywords_for(source, given)
-    return place, progress, source_of(source, sizing, grids), keywords
+    return place, progress, source_of(source, sizing, grids, place.max_bytes), keywords
 
 
 def settle(context: Optional[Context], options: dict[str, Any]) -> tuple[Any, Any]:

@@ -122,10 +122,11 @@ def with_faces(source: Any, faces: Sequence[Any]) -> Any:
     return source, faces[0]
 
 
-def source_of(given: Any, sizing: Any = None, grids: Optional[Mapping[str, Any]] = None) -> Source:
-    """The source that what is opened means, with a sizing field and grids that are in memory."""
+def source_of(given: Any, sizing: Any = None, grids: Optional[Mapping[str, Any]] = None, max_bytes: int = 0) -> Source:
+    """The source that what is opened means, with a sizing field and grids that are in memory; the limit is of each grid,
+    and with 0 what is free."""
     source = _source_of(given)
-    add_grids(source, grids or {}, given)
+    add_grids(source, grids or {}, given, max_bytes)
     if is_sparse(sizing):
         raise Error("sizing is a sparse volume; give an isoshell.Volume of an array, or a .vdb file of edge lengths")
     if isinstance(sizing, Volume):

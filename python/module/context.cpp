@@ -38,6 +38,7 @@ void bind_context(nb::module_& m) {
       nb::arg("keywords"), "The option max_memory in bytes; 0 without it.");
   nb::class_<Place>(m, "Place", "The device, threads and memory of runs, one at a time.")
       .def(nb::init<const Keywords&>(), nb::arg("keywords"))
+      .def_prop_ro("max_bytes", &Place::max_memory_bytes)
       .def("cancel", &Place::cancel)
       .def("close", &Place::close);
 }

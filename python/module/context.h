@@ -32,6 +32,8 @@ class Place {
   };
 
   void cancel() { context_->cancel = true; }
+  /// 0: what is free when a run begins.
+  int64_t max_memory_bytes() const { return settings_.max_memory_bytes; }
   /// Lets go of what is kept on a device.
   void close();
 

@@ -120,6 +120,20 @@ def test_any_source_takes_grids_that_say_where_they_stand(ball, tmp_path):
         isoshell.remesh(ball, grids=f"{tmp_path}/set.vdb:w", **SMALL)
 
 
+def test_a_level_set_as_a_grid_is_negative_beyond_its_band(ball):
+    around = isoshell.level_set(ball, resolution=80, level_set_band=2)
+    vertices, faces = ball
+    found = isoshell.remesh(vertices * 0.2, faces, grids={"distance": around}, **SMALL).attributes["distance"]  # far inside
+    assert np.allclose(found, -around.background)
+
+
+def test_whole_numbers_may_be_masked(ball):
+    side = np.ma.masked_array(np.full((17, 17, 17), 2**40), np.ones((17, 17, 17), bool))
+    side[4:13, 4:13, 4:13] = 7
+    grid = isoshell.Volume(side, spacing=0.5, origin=-4)
+    assert set(isoshell.remesh(ball, grids={"side": grid}, **SMALL).attributes["side"]) == {7}
+
+
 def test_grids_in_memory_that_cannot_be_are_refused(ball):
     at = lattice()
 
@@ -133,6 +147,18 @@ def test_grids_in_memory_that_cannot_be_are_refused(ball):
     assert "it must be an isoshell.Volume" in refusal("heat")
     assert "has the shape (17, 17, 17, 2)" in refusal(isoshell.Volume(at[..., :2]))
     assert "not interpolated" in refusal(isoshell.Volume((at[..., 0] * 1e8).astype(np.int64)))
+    odd = np.zeros(at.shape[:3], np.int64)
+    odd[3, 2, 1] = 2**24 + 1  # which becomes 2**24 in single precision
+    assert "not interpolated" in refusal(isoshell.Volume(odd))
+    assert "not interpolated" in refusal(isoshell.Volume(np.ma.masked_array(odd, np.arange(odd.size).reshape(odd.shape) == 0)))
+    for wrong in (np.inf, 1e300):
+        heat = at[..., 0].copy()
+        heat[3, 2, 1] = wrong
+        assert "value [3, 2, 1] is inf" in refusal(isoshell.Volume(heat))
+    assert "of NanoVDB" in refusal(b"NanoVDB0" + bytes(1000))
+    with pytest.raises(isoshell.Error) as refused:
+        isoshell.remesh(ball, grids={"heat": isoshell.Volume(np.zeros((400, 400, 400), np.float32))}, max_memory="100M", **SMALL)
+    assert refused.value.code == ErrorCode.OUT_OF_MEMORY and str(refused.value).startswith("heat: its values take")
     with pytest.raises(isoshell.Error, match="a name of grids is 3"):
         isoshell.remesh(ball, grids={3: isoshell.Volume(at[..., 0])}, **SMALL)
     with pytest.raises(isoshell.Error, match="those of one run"):

@@ -11,6 +11,7 @@
 #include "isoshell/io/memory_input.h"
 #include "isoshell/run/run.h"
 #include "values/labels.h"
+#include "vdb_isomesh/memory.h"
 
 namespace nb = nanobind;
 
@@ -67,25 +68,33 @@ std::array<WorldPoint, 3> steps_of(const Steps& steps) {
   return {point_of(steps[0]), point_of(steps[1]), point_of(steps[2])};
 }
 
+/// 0 is what is free.
+int64_t limit_of(int64_t max_bytes) { return max_bytes > 0 ? max_bytes : tool::default_memory_limit_bytes(); }
+
 GivenGrid dense_grid(const std::string& name, const AnyArray& values, bool is_whole, const Triple& origin,
-                     const Steps& steps) {
+                     const Steps& steps, int64_t max_bytes) {
   DenseVolume volume;
   volume.values = floats_of("values", values, 3);
   for (size_t i = 0; i < 3; ++i) volume.size[i] = int64_t(values.shape(i)), volume.stride[i] = values.stride(i);
   volume.step_world = steps_of(steps);
   volume.origin_world = point_of(origin);
-  return {grid_field(volume, name, is_whole)};
+  const nb::gil_scoped_release others_run;
+  return {grid_field(volume, name, is_whole, limit_of(max_bytes))};
 }
 
 GivenGrid sparse_grid_of(const std::string& name, const AnyArray& coordinates, const AnyArray& values,
-                         double background, const Triple& origin, const Steps& steps) {
-  const SparseVolume volume{voxels_of(coordinates), values_of(values), background, false,
-                            steps_of(steps),        point_of(origin)};
-  return {grid_field(sparse_grid(volume, name), name)};
+                         double background, bool is_level_set, const Triple& origin, const Steps& steps,
+                         int64_t max_bytes) {
+  const SparseVolume volume{voxels_of(coordinates), values_of(values), background,
+                            is_level_set,           steps_of(steps),   point_of(origin)};
+  const nb::gil_scoped_release others_run;
+  return {grid_field(sparse_grid(volume, name, limit_of(max_bytes)), name)};
 }
 
 GivenGrid vdb_grid(const std::string& name, const AnyArray& bytes) {
-  return {grid_field_of_vdb(bytes_of(bytes), name)};
+  const View<const char> given = bytes_of(bytes);
+  const nb::gil_scoped_release others_run;
+  return {grid_field_of_vdb(given, name)};
 }
 
 GivenGrid vector_grid(const std::string& name, const GivenGrid& x, const GivenGrid& y, const GivenGrid& z) {
@@ -98,15 +107,15 @@ void bind_given_grid(nb::module_& m) {
   nb::class_<GivenGrid>(m, "GivenGrid", "Values that vertices of a result get.")
       .def_static(
           "dense", dense_grid, nb::arg("name"), nb::arg("values"), nb::arg("is_whole"), nb::arg("origin"),
-          nb::arg("steps"),
+          nb::arg("steps"), nb::arg("max_bytes"),
           nb::sig("def dense(name: str, values: typing.Any, is_whole: bool, origin: collections.abc.Sequence[float], "
-                  "steps: collections.abc.Sequence[collections.abc.Sequence[float]]) -> GivenGrid"))
-      .def_static(
-          "sparse", sparse_grid_of, nb::arg("name"), nb::arg("coordinates"), nb::arg("values"), nb::arg("background"),
-          nb::arg("origin"), nb::arg("steps"),
-          nb::sig("def sparse(name: str, coordinates: typing.Any, values: typing.Any, background: float, origin: "
-                  "collections.abc.Sequence[float], steps: "
-                  "collections.abc.Sequence[collections.abc.Sequence[float]]) -> GivenGrid"))
+                  "steps: collections.abc.Sequence[collections.abc.Sequence[float]], max_bytes: int) -> GivenGrid"))
+      .def_static("sparse", sparse_grid_of, nb::arg("name"), nb::arg("coordinates"), nb::arg("values"),
+                  nb::arg("background"), nb::arg("is_level_set"), nb::arg("origin"), nb::arg("steps"),
+                  nb::arg("max_bytes"),
+                  nb::sig("def sparse(name: str, coordinates: typing.Any, values: typing.Any, background: float, "
+                          "is_level_set: bool, origin: collections.abc.Sequence[float], steps: "
+                          "collections.abc.Sequence[collections.abc.Sequence[float]], max_bytes: int) -> GivenGrid"))
       .def_static("vdb", vdb_grid, nb::arg("name"), nb::arg("bytes"),
                   nb::sig("def vdb(name: str, bytes: typing.Any) -> GivenGrid"))
       .def_static("vector", vector_grid, nb::arg("name"), nb::arg("x"), nb::arg("y"), nb::arg("z"));

@@ -79,7 +79,7 @@ std::vector<std::shared_ptr<const GridField>> read_grid_fields(const std::string
 std::shared_ptr<const GridField> grid_field_of_vdb(View<const char>, const std::string& name) {
   throw_without_openvdb(ErrorCode::unreadable_input, name);
 }
-std::shared_ptr<const GridField> grid_field(const DenseVolume&, const std::string& name, bool) {
+std::shared_ptr<const GridField> grid_field(const DenseVolume&, const std::string& name, bool, int64_t) {
   throw_without_openvdb(ErrorCode::unreadable_input, name);
 }
 StageFile read_stage(const MeshSource& source) { throw_without_openvdb(ErrorCode::unreadable_input, source.name()); }

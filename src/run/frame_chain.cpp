@@ -101,8 +101,8 @@ uint64_t digest_of_file(const std::string& path, FileDigests& known) {
   return known[path] = sum;
 }
 
-/// A field in memory by the lengths that it gives the input, one of a file by the file and the grid's name, and an
-/// attribute by its name.
+/// A field in memory by the lengths that it gives the input, one of a file by the file and the grid's name, an
+/// attribute by its name, and a grid in memory by its values.
 uint64_t digest_of_options(const RunRequest& request, const Input& input, FileDigests& files) {
   const RequestedOptions& options = request.options;
   std::string text = std::string(ISOSHELL_VERSION) + options_json(options.values) +
@@ -110,6 +110,8 @@ uint64_t digest_of_options(const RunRequest& request, const Input& input, FileDi
   const std::string& sizing = options.sizing;
   if (!sizing.empty()) text += " sizing " + sizing.substr(file_of_sizing(sizing).size());
   for (const std::string& name : request.input.grids) text += " grid " + grid_name_of(name).grid;
+  for (const auto& grid : request.input.given_grids)
+    text += " grid " + grid->name() + " " + digest_text(grid->digest());
   if (!request.level_set.path.empty())
     text += " level set " + std::to_string(request.level_set.band_vox) + (request.level_set.as_half ? " halves" : "") +
             (request.level_set.of == LevelSetOf::result ? " of result" : "");

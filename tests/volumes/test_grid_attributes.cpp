@@ -223,6 +223,59 @@ TEST_CASE("grids: an array gives a result its values, and three of them a vector
   CHECK(named(of, "side").type == NumberType::i32);
 }
 
+TEST_CASE("grids: an array with values that a grid does not hold is refused by its place", "[grids][unit]") {
+  std::vector<float> values(8, 1.f);
+  DenseVolume volume;
+  volume.values = values.data();
+  for (int64_t& size : volume.size) size = 2;
+  volume.stride[0] = 4, volume.stride[1] = 2, volume.stride[2] = 1;
+  const auto refused = [&](float value, bool is_whole) {
+    values[5] = value;
+    return message_of(ErrorCode::usage, [&] { grid_field(volume, "heat", is_whole); });
+  };
+  CHECK(contains(refused(INFINITY, false), "heat: value [1, 0, 1] is inf; values are finite"));
+  CHECK(contains(refused(1.5f, true), "heat: value [1, 0, 1] is 1.5; whole numbers are whole"));
+  CHECK(contains(refused(33554432.f, true), "none is beyond 16777216"));
+  values[5] = NAN;
+  grid_field(volume, "heat", true);
+  CHECK(contains(message_of(ErrorCode::out_of_memory, [&] { grid_field(volume, "heat", false, 1000); }), "raise"));
+}
+
+TEST_CASE("grids: those of other tiles have other digests", "[grids][unit]") {
+  openvdb::initialize();
+  std::vector<uint64_t> digests;
+  for (const float value : {0.f, 1.f, 2.f}) {
+    auto grid = openvdb::FloatGrid::create(0);
+    if (value > 0) grid->tree().addTile(1, openvdb::Coord(8, 0, 0), value, true);
+    grid->tree().setValueOn(openvdb::Coord(0, 0, 0), 5);
+    digests.push_back(grid_field(read_grid(*grid), "heat")->digest());
+  }
+  CHECK(digests[0] != digests[1]);
+  CHECK(digests[1] != digests[2]);
+  CHECK(digests[0] != digests[2]);
+}
+
+TEST_CASE("grids: a frame is made again where those in memory are others", "[grids][sequence]") {
+  const Ball ball;
+  openvdb::io::File(path_of_frame(ball.folder / "in.##.vdb", 1)).write(ball_with_values());
+  SequenceRequest request;
+  request.frame = ball.asks({});
+  request.frame.input.path = ball.folder / "in.##.vdb";
+  request.frame.input.grid = "surface";
+  request.frame.output = named_output(ball.folder / "out.##.ply", "", StopAfter::mesh);
+  request.frames = {1, 1, 1};
+  request.resume = true;
+  const auto made_with = [&](double middle) {
+    const auto grid = cube_of<openvdb::FloatGrid>("heat", heat_at, middle);
+    request.frame.input.given_grids = {grid_field(read_grid(*grid), "heat")};
+    TestContext context;
+    return run_sequence(request, context).made;
+  };
+  CHECK(made_with(0) == 1);
+  CHECK(made_with(0) == 0);
+  CHECK(made_with(0.5) == 1);
+}
+
 TEST_CASE("grids: each frame of a sequence has its own, and is made again where they are others", "[grids][sequence]") {
   const Ball ball;
   const auto write_frame = [&](int frame, double middle) {

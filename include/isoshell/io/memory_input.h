@@ -44,9 +44,13 @@ TriangleSoup surface_of_volume(const DenseVolume& volume, const std::string& nam
                                VolumeInfo& info);
 
 /// The values for InputRequest::given_grids, under a name: a grid of floats, or of whole numbers, which are not
-/// interpolated. Places beyond the array, and where values are NaN, have 0. A copy of them. Throws: usage for steps
-/// that span no volume; unreadable_input in a build without OpenVDB.
-std::shared_ptr<const GridField> grid_field(const DenseVolume& volume, const std::string& name, bool is_whole = false);
+/// interpolated. Places beyond the array, and where values are NaN, have 0. A copy of them. Cost: linear in the values,
+/// on one thread; 2 KiB for each block of 8^3 that has a value. Throws: usage for steps that span no volume, an
+/// infinite value, and where numbers are said to be whole one that is not, or is beyond 2^24; out_of_memory where the
+/// blocks of the whole array would take more than the limit in bytes (0: none); unreadable_input in a build without
+/// OpenVDB.
+std::shared_ptr<const GridField> grid_field(const DenseVolume& volume, const std::string& name, bool is_whole = false,
+                                            int64_t memory_limit_bytes = 0);
 
 /// The walls between voxels of different labels, faired within the voxels: every region is bounded by closed triangles,
 /// which it shares with those beside it (see implicit/labels). `surface.regions` says what they part. Result: the same

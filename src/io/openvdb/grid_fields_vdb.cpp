@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <type_traits>
 
 #include "core/hash_bytes.h"
@@ -16,6 +18,7 @@
 #include "io/vdb/grid_fields.h"
 #include "io/vdb/grid_names.h"
 #include "isoshell/error.h"
+#include "isoshell/readable.h"
 
 namespace isoshell {
 namespace {
@@ -135,14 +138,31 @@ Field field_of(const std::string& name, uint64_t digest, openvdb::GridBase::Cons
                                                std::static_pointer_cast<const VdbGrid<Value>>(std::move(grid)));
 }
 
-/// Of what its leaves hold, where they are, and what is around them.
+/// Of the values of nodes above the leaves, where these are not the background.
+template <class Value>
+uint64_t digest_of_tiles(const VdbGrid<Value>& grid) {
+  uint64_t sum = 0;
+  auto tile = grid.tree().cbeginValueAll();
+  for (tile.setMaxDepth(tile.getLeafDepth() - 1); tile; ++tile) {
+    const Value value = tile.getValue();
+    if (!tile.isValueOn() && value == grid.background()) continue;
+    const openvdb::CoordBBox box = tile.getBoundingBox();
+    const uint64_t parts[] = {sum, hash_bytes(box.min().asPointer(), 3 * int64_t(sizeof(int32_t))),
+                              hash_bytes(box.max().asPointer(), 3 * int64_t(sizeof(int32_t))),
+                              hash_bytes(&value, sizeof value), uint64_t(tile.isValueOn())};
+    sum = hash_bytes(parts, int64_t(sizeof parts));
+  }
+  return sum;
+}
+
+/// Of what its nodes hold, where they are, and what is around them.
 template <class Value>
 uint64_t digest_of(const openvdb::GridBase& of) {
   const auto& grid = static_cast<const VdbGrid<Value>&>(of);
   const Value background = grid.background();
-  const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
-  std::vector<uint64_t> parts = {hash_bytes(&background, sizeof background),
-                                 hash_bytes(matrix.asPointer(), 16 * int64_t(sizeof(double)))};
+  const AffineMap map = affine_map_of(grid);
+  std::vector<uint64_t> parts = {hash_bytes(&background, sizeof background), hash_bytes(map.at, int64_t(sizeof map.at)),
+                                 digest_of_tiles<Value>(grid)};
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
     const openvdb::Coord at = leaf->origin();
     const auto mask = leaf->getValueMask();
@@ -234,6 +254,32 @@ class Reader {
   std::vector<Field> fields_;
 };
 
+constexpr int64_t kLeafBytes = 512 * 4 + 192;  // of 32 bits a value, with masks and allocation
+
+void check_memory(const DenseVolume& volume, const std::string& name, int64_t limit_bytes) {
+  double bytes = double(kLeafBytes);
+  for (const int64_t size : volume.size) bytes *= double((size + 7) / 8);
+  if (limit_bytes <= 0 || bytes <= double(limit_bytes)) return;
+  throw Error(ErrorCode::out_of_memory, "memory",
+              name + ": its values take " + readable_bytes(int64_t(bytes)) + " as a grid, more than the limit of " +
+                  readable_bytes(limit_bytes) + "; crop it, resample it coarser or raise --max-memory");
+}
+
+constexpr float kMostWhole = 1 << 24;  // whole numbers that single precision holds
+
+bool is_held_whole(float value) { return std::abs(value) <= kMostWhole && value == std::floor(value); }
+
+[[noreturn]] void refuse_value(const std::string& name, const std::array<int64_t, 3>& at, float value) {
+  const std::string place =
+      "[" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + "]";
+  std::ostringstream number;
+  number << std::setprecision(9) << value;
+  throw Error(ErrorCode::usage, "arguments",
+              name + ": value " + place + " is " + number.str() +
+                  (std::isinf(value) ? "; values are finite in single precision, or NaN where nothing is known"
+                                     : "; whole numbers are whole, and none is beyond 16777216; or give floats"));
+}
+
 }  // namespace
 
 std::vector<Field> read_grid_fields(const MeshSource& source, const std::vector<std::string>& names,
@@ -256,6 +302,9 @@ std::vector<Field> read_grid_fields(const std::string& path, const std::vector<s
 Field grid_field_of_vdb(View<const char> bytes, const std::string& name) {
   initialize_openvdb();
   const MeshSource source(name, bytes);
+  if (is_nano_file(source))
+    throw Error(ErrorCode::usage, "arguments",
+                name + ": its bytes are of NanoVDB, whose values are not sampled; convert them by nanoToOpenVDB()");
   Reader reader(source);
   reader.read_only(name);
   return reader.taken().front();
@@ -270,11 +319,14 @@ Field field_of_values(const openvdb::GridBase::ConstPtr& grid, const std::string
   return kind->field(name, kind->digest(*grid), grid);
 }
 
-Field grid_field(const DenseVolume& volume, const std::string& name, bool is_whole) {
+Field grid_field(const DenseVolume& volume, const std::string& name, bool is_whole, int64_t memory_limit_bytes) {
+  check_memory(volume, name, memory_limit_bytes);
   const auto read = [&](int64_t i, int64_t j, int64_t k, auto& value) {
     const float given = value_of(volume, i, j, k);
-    if (!std::isnan(given)) value = std::decay_t<decltype(value)>(given);
-    return !std::isnan(given);
+    if (std::isnan(given)) return false;
+    if (std::isinf(given) || (is_whole && !is_held_whole(given))) refuse_value(name, {i, j, k}, given);
+    value = std::decay_t<decltype(value)>(given);
+    return true;
   };
   if (is_whole) return field_of_values(dense_grid<VdbIntGrid>(volume, name, read), name);
   return field_of_values(dense_grid<VdbFloatGrid>(volume, name, read), name);
