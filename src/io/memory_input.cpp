@@ -118,7 +118,11 @@ std::shared_ptr<const GridField> grid_field(const MemoryGrid& grid, const std::s
 Input input_of_vdb(View<const char> bytes, const std::string& name, const InputRequest& request, const Context& context,
                    const Tell& tell) {
   InputReader reader(name, context, tell);
-  if (const std::shared_ptr<const HeldGrid> grid = copied_nano_grid(bytes))
+  VolumeReadOptions options;
+  options.grid = request.grid;
+  options.iso = request.iso;
+  options.memory_limit_bytes = context.memory_limit_bytes;
+  if (const std::shared_ptr<const HeldGrid> grid = copied_nano_grid(bytes, name, options))
     reader.hold(*grid, request);
   else
     reader.read(MeshSource(name, bytes), request);

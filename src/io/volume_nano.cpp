@@ -167,7 +167,7 @@ std::unique_ptr<GridBytes> unpack(const MeshSource& source, const NanoGridSpan& 
   throw Error(ErrorCode::unreadable_input, "read", "a grid of NanoVDB: " + what);
 }
 
-/// A grid whose bytes are another's.
+/// A grid of NanoVDB from memory.
 class HeldNanoGrid final : public HeldGrid {
  public:
   /// Of a grid in bytes that lie where it keeps them, or outlive it.
@@ -197,6 +197,29 @@ class HeldNanoGrid final : public HeldGrid {
   const std::unique_ptr<GridBytes> owned_;
   const View<const std::byte> bytes_;
 };
+
+/// A grid in bytes that are another's.
+struct NanoGridBytes {
+  NanoHead head;
+  View<const char> bytes;
+
+  VolumeGrid volume() const { return about_nano(head.name, nano_kind(head.grid_type, head.grid_class)); }
+};
+
+/// The grids that stand one behind another, as in a handle; none where the bytes do not begin with one.
+std::vector<NanoGridBytes> grids_in_a_row(View<const char> bytes) {
+  std::vector<NanoGridBytes> grids;
+  for (int64_t at = 0; at < bytes.size;) {
+    const View<const char> left{bytes.data + at, bytes.size - at};
+    const NanoHead head = nano_head_of({reinterpret_cast<const std::byte*>(left.data), left.size});
+    const bool is_grid = head.fault.empty() && head.grid_bytes >= uint64_t(kGridHeadBytes) &&
+                         head.grid_bytes <= uint64_t(left.size);  // of a file a hash of the grid's name is here
+    if (!is_grid) break;
+    grids.push_back({head, {left.data, int64_t(head.grid_bytes)}});
+    at += int64_t(head.grid_bytes);
+  }
+  return grids;
+}
 
 std::vector<VolumeGrid> grids_of(const std::vector<NanoGridSpan>& spans) {
   std::vector<VolumeGrid> grids;
@@ -234,15 +257,20 @@ MemoryGrid nano_grid(View<const std::byte> bytes) {
   return MemoryGrid(std::make_shared<HeldNanoGrid>(head, bytes, nullptr));
 }
 
-std::shared_ptr<const HeldGrid> copied_nano_grid(View<const char> bytes) {
-  const NanoHead head = nano_head_of({reinterpret_cast<const std::byte*>(bytes.data), bytes.size});
-  const bool is_grid = head.fault.empty() && head.grid_bytes >= uint64_t(kGridHeadBytes) &&
-                       head.grid_bytes <= uint64_t(bytes.size);  // of a file a hash of the grid's name is here
-  if (!is_grid) return nullptr;
-  auto copy = std::make_unique<GridBytes>(bytes.size);
-  std::memcpy(copy->view().data, bytes.data, size_t(bytes.size));
+std::shared_ptr<const HeldGrid> copied_nano_grid(View<const char> bytes, const std::string& name,
+                                                 const VolumeReadOptions& options) {
+  const std::vector<NanoGridBytes> grids = grids_in_a_row(bytes);
+  if (grids.empty()) return nullptr;
+  const MeshSource source(name, bytes);
+  std::vector<VolumeGrid> about;
+  for (const NanoGridBytes& grid : grids) about.push_back(grid.volume());
+  const size_t chosen = grids.size() == 1 ? 0 : choose_grid(name, about, options);
+  const View<const char> of = grids[chosen].bytes;
+  check_volume_memory(source, about[chosen], of.size, options);
+  auto copy = std::make_unique<GridBytes>(of.size);
+  std::memcpy(copy->view().data, of.data, size_t(of.size));
   const View<const std::byte> grid = copy->grid();
-  return std::make_shared<HeldNanoGrid>(head, grid, std::move(copy));
+  return std::make_shared<HeldNanoGrid>(grids[chosen].head, grid, std::move(copy));
 }
 
 }  // namespace isoshell

@@ -331,6 +331,26 @@ TEST_CASE("memory grid: the bytes of a grid of NanoVDB are a source wherever the
   CHECK(input.soup.vertices.size() == input_of(read_grid(handle), "mine", {}, context).soup.vertices.size());
 }
 
+TEST_CASE("memory grid: of several grids of NanoVDB in one row of bytes one is named", "[memory_grid]") {
+  const auto other = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(5.f, openvdb::Vec3f(12, -4, 5), .5f, 3.f);
+  other->setName("other");
+  const auto mine = nanovdb::openToNanoVDB(*ball()), others = nanovdb::openToNanoVDB(*other);
+  std::vector<char> row;
+  for (const auto* handle : {&mine, &others}) {
+    const auto* const begin = reinterpret_cast<const char*>(handle->data());
+    row.insert(row.end(), begin, begin + handle->size());
+  }
+  const View<const char> bytes{row.data(), int64_t(row.size())};
+  Context context;
+  InputRequest request;
+  const auto read = [&] { return input_of_vdb(bytes, "row", request, context); };
+  CHECK(contains(message_of(ErrorCode::usage, read), "\"other\""));
+  request.grid = "other";
+  CHECK(read().soup.vertices.size() == input_of(read_grid(others), "mine", {}, context).soup.vertices.size());
+  context.memory_limit_bytes = 1000;
+  CHECK(contains(message_of(ErrorCode::out_of_memory, read), "more than the limit"));
+}
+
 TEST_CASE("memory grid: several level sets of a file of NanoVDB are those of a file of OpenVDB", "[regions][vdb]") {
   const TemporaryFolder folder;
   const auto other = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(5.f, openvdb::Vec3f(12, -4, 5), .5f, 3.f);

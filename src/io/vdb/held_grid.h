@@ -32,8 +32,10 @@ class HeldGrid {
   VolumeGrid volume_, labels_;
 };
 
-/// A copy of the grid of NanoVDB whose bytes these are, wherever they begin; null where they are none, as those of a
-/// .nvdb file.
-std::shared_ptr<const HeldGrid> copied_nano_grid(View<const char> bytes);
+/// A copy of the grid of NanoVDB whose bytes these are, wherever they begin, or of the one of several that the options
+/// name; null where they are none, as those of a .nvdb file. `name` is what messages call the bytes. Throws: as
+/// read_nano_volume() does.
+std::shared_ptr<const HeldGrid> copied_nano_grid(View<const char> bytes, const std::string& name,
+                                                 const VolumeReadOptions& options);
 
 }  // namespace isoshell
