@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
     from ._options import Options
 
-OF_ONE_RUN = ("save_shell", "save_voronoi", "save_level_set", "split_regions", "stats", "report", "progress")
+OF_ONE_RUN = ("save_shell", "save_voronoi", "save_level_set", "level_set_half", "level_set_of", "level_set_band",
+              "split_regions", "stats", "report", "progress")
 MOST_WORKERS = 4096
 MOST_OF_A_WORKER = 4  # sources that were read and whose results were not handed out yet
 
@@ -97,8 +98,8 @@ def remesh_many(sources: Iterable[SourceLike], *, workers: Optional[int] = None,
         on_error: "raise" the Error of the first bad source, named by its number from 0, where its result would come; or
             "return" it in the place of the result, and go on.
         options: as remesh() takes them, but for context and what is of one run: output, save_shell, save_voronoi,
-            save_level_set, split_regions, report, progress, and stats as a file. threads is of each worker, one on the CPU without it;
-            max_memory is of each run.
+            save_level_set and the other options of level sets, split_regions, report, progress, and stats as a file.
+            threads is of each worker, one on the CPU without it; max_memory is of each run.
 
     Returns:
         An iterator of the results, with a length where the sources have one.

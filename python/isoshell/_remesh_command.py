@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import logging
+import re
 import sys
 import time
 import warnings
@@ -29,6 +30,7 @@ SHORT = {"-v": "--verbose", "-q": "--quiet", "-h": "--help", "-V": "--version", 
 def names_ours(words: list[str]) -> bool:
     """Whether INPUT or OUTPUT is one, and nobody asks for the help."""
     places, options = split_words(words)
+    places += [options["output"]] if options.get("output") else []
     says_format = ["input_format"] * max(1, len(places) - 1) + ["output_format"]
     is_ours = any(name in options for name in OF_FILLING) or any(is_usd(place) for place in places) or any(
         format_of(place) is not None and not options.get(option) for place, option in zip(places, says_format))
@@ -36,7 +38,7 @@ def names_ours(words: list[str]) -> bool:
 
 
 def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
-    """The places that are no options, and the options as keywords, not checked."""
+    """The places that are no options, and the options as keywords, not checked; a named OUTPUT is one of these."""
     places: list[str] = []
     options: dict[str, Any] = {}
     left = [*words]
@@ -53,9 +55,20 @@ def split_words(words: list[str]) -> tuple[list[str], dict[str, Any]]:
             continue
         text = value if is_joined else left.pop(0) if left else ""
         options[name] = f"{options[name]}\n{text}" if kind is not None and kind.repeats and name in options else text
-    if options.get("output"):
-        places.append(options.pop("output"))
     return places, options
+
+
+def has_inputs_alone(places: list[str], options: dict[str, Any]) -> bool:
+    """Whether the last place is no OUTPUT, as in the command: nothing is written, and there is one place, or it is a
+    volume behind others, which is no OUTPUT of a run to a mesh."""
+    if not options.get("dry_run") or not places:
+        return False
+    return len(places) == 1 or ("stop_after" not in options and is_volume(places[0]) and is_volume(places[-1]))
+
+
+def is_volume(place: str) -> bool:
+    """Whether its name is that of a volume, perhaps with one of its grids."""
+    return re.search(r"\.n?vdb(:[^/]*)?$", place, re.IGNORECASE) is not None
 
 
 def _long(word: str, left: list[str]) -> str:
@@ -75,8 +88,12 @@ def run(words: list[str]) -> int:
         warnings.simplefilter("ignore" if options.get("quiet") else "always", RunWarning)
         setattr(warnings, "showwarning", _show_warning)
         try:
+            if options.get("output"):
+                places.append(options.pop("output"))
+            elif has_inputs_alone(places, options):
+                places.append("")  # OUTPUT, which nothing is written to
             most = 2 if "frames" in options else len(places)
-            if not 2 <= len(places) <= most and not (options.get("dry_run") and len(places) == 1):
+            if not 2 <= len(places) <= most:
                 raise Error(f"{len(places)} names of files; give INPUT and OUTPUT", stage="command line")
             _check(places, options)
             if "frames" in options:
@@ -103,7 +120,7 @@ def _check(places: list[str], options: dict[str, Any]) -> None:
     if "fill" in options:
         if "frames" in options:
             raise Error("--fill is for one mesh; leave out --frames and name a frame", stage="command line")
-        check_target(options["fill"], bool(options.get("force")), [("OUTPUT", place) for place in places[1:][-1:]])
+        check_target(options["fill"], bool(options.get("force")), [("OUTPUT", place) for place in places[1:][-1:] if place])
     elif "fill_mesher" in options:
         raise Error("--fill-mesher needs --fill FILE", stage="command line")
     if "fill_mesher" in options and options["fill_mesher"] not in MESHERS:
@@ -116,7 +133,7 @@ def _check(places: list[str], options: dict[str, Any]) -> None:
 def _run(places: list[str], options: dict[str, Any]) -> None:
     start = time.perf_counter()
     options.setdefault("progress", "auto")
-    source: Union[str, list[str]] = places[0] if len(places) <= 2 else places[:-1]
+    source: Union[str, list[str]] = places[0] if len(places) == 2 else places[:-1]
     to_fill, mesher = options.pop("fill", None), options.pop("fill_mesher", "tetgen")
     if options.pop("dry_run", False):
         found = estimate(source, **options)

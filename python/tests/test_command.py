@@ -11,7 +11,7 @@ import isoshell
 import numpy as np
 import pytest
 from conftest import SOURCE, write_obj
-from isoshell._remesh_command import split_words
+from isoshell._remesh_command import has_inputs_alone, split_words
 
 COMMANDS = ("remesh", "info", "farm")
 
@@ -98,6 +98,14 @@ def test_what_can_name_a_file_is_no_misspelt_command(tmp_path, name):
 def test_options_that_repeat_do_so_where_python_reads_or_writes_the_file():
     words = ["a.usda", "b.ply", "--region-edge-length", "a=1", "--region-edge-length=b=2", "--seed", "3", "--seed", "4"]
     assert split_words(words) == (["a.usda", "b.ply"], {"region_edge_length": "a=1\nb=2", "seed": "4"})
+
+
+def test_a_dry_run_has_an_output_only_where_the_command_has_one():
+    dry = {"dry_run": True}
+    assert has_inputs_alone(["a.ply"], dry) and has_inputs_alone(["a.vdb", "b.vdb:piece*"], dry)
+    for places, options in ((["a.ply", "b.ply"], dry), (["a.vdb", "b.ply"], dry), (["a.vdb", "b.vdb"], {}),
+                            (["a.vdb", "b.vdb"], {**dry, "stop_after": "shell"})):
+        assert not has_inputs_alone(places, options)
 
 
 def test_remesh_is_what_the_call_without_a_name_does(tmp_path, ball):

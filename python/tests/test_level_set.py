@@ -86,7 +86,13 @@ def test_a_level_set_can_be_copied_and_pickled(distances, tmp_path):
         distances.save(tmp_path / "first.vdb", overwrite=True)
         assert (tmp_path / "again.vdb").read_bytes() == (tmp_path / "first.vdb").read_bytes()
     state = distances._made.__getstate__()
-    for wrong in (state[:4], (state[0][1:], *state[1:]), (*state[:3], state[3][4:], state[4]), (state[0], state[1][::-1], *state[2:])):
+    far = np.frombuffer(state[3], np.float32).copy()
+    far[0] = np.nan
+    numbers = [np.frombuffer(state[0], np.float64).copy() for _ in range(3)]  # origin, voxel size, whole numbers
+    numbers[0][0], numbers[1][3], numbers[2][3] = np.inf, 0, np.nan
+    frames = [(each.tobytes(), *state[1:]) for each in numbers]
+    for wrong in (*frames, (*state[:3], far.tobytes(), state[4]), (*state[:4], 0.5), (*state[:4], 17.0), (*state[:4], np.nan),
+                  state[:4], (state[0][1:], *state[1:]), (*state[:3], state[3][4:], state[4]), (state[0], state[1][::-1], *state[2:])):
         with pytest.raises(isoshell.Error):
             type(distances._made).__new__(type(distances._made)).__setstate__(wrong)
 
@@ -129,6 +135,32 @@ def test_an_array_over_the_limit_is_refused_with_its_size(distances):
     assert refused.value.code == ErrorCode.OUT_OF_MEMORY and "more than the limit" in str(refused.value)
     with pytest.raises(isoshell.Error, match="the unit of a size"):
         distances.to_array(max_memory="much")
+
+
+def test_a_level_set_of_a_tiny_solid_is_saved(tmp_path):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) * 1e-6
+    tetrahedron = isoshell.Mesh(corners, [[2, 1, 0], [1, 3, 0], [2, 0, 3], [1, 2, 3]])
+    isoshell.remesh(tetrahedron, save_level_set=tmp_path / "run.vdb", **SMALL)
+    distances = isoshell.level_set(tetrahedron, resolution=40)
+    distances.save(tmp_path / "set.vdb")
+    assert (tmp_path / "run.vdb").read_bytes() == (tmp_path / "set.vdb").read_bytes()
+    assert np.ptp(isoshell.remesh(tmp_path / "set.vdb", **SMALL).vertices, 0) == pytest.approx([1e-6] * 3, rel=0.1)
+    with pytest.raises(isoshell.Error, match="leave out level_set_half"):
+        distances.save(tmp_path / "half.vdb", half=True)
+
+
+@pytest.mark.parametrize("option", [{"level_set_half": True}, {"level_set_of": "result"}, {"level_set_band": 4}])
+def test_options_of_a_level_set_need_one(ball, option):
+    with pytest.raises(isoshell.Error, match="none is asked for"):
+        isoshell.remesh(ball, **option, **SMALL)
+    with pytest.raises(isoshell.Error, match="not where many are meshed"):
+        isoshell.remesh_many([ball], **option, **SMALL)
+
+
+def test_an_estimate_refuses_what_a_run_refuses(ball):
+    for call in (isoshell.remesh, isoshell.estimate):
+        with pytest.raises(isoshell.Error, match="union is for several level sets"):
+            call(ball, union=True, **SMALL)
 
 
 def test_options_of_meshes_and_regions_are_refused(ball):

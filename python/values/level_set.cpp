@@ -135,6 +135,16 @@ nb::tuple state_of(const MadeLevelSet& made) {
                         packed(set.distance_vox), set.band_vox);
 }
 
+/// Whether a pickled one has numbers that one has.
+bool is_sound(const LevelSet& set) {
+  const LatticeFrame& frame = set.frame;
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  return set.distance_vox.size() == set.voxels.voxel_count() && is_finite(frame.origin.x) &&
+         is_finite(frame.origin.y) && is_finite(frame.origin.z) && is_finite(frame.voxel_size) &&
+         frame.voxel_size > 0 && set.band_vox >= 1 && set.band_vox <= kMaxLevelSetBandVox &&
+         std::all_of(set.distance_vox.begin(), set.distance_vox.end(), is_finite);
+}
+
 MadeLevelSet level_set_of_state(const nb::tuple& s) {
   try {
     if (s.size() != 5) refuse_state(kType);
@@ -145,7 +155,7 @@ MadeLevelSet level_set_of_state(const nb::tuple& s) {
     set.voxels = voxel_set_of_leaves(buffer_of<uint64_t>(s[1]), buffer_of<LeafMask>(s[2]), set.frame.extent_vox);
     set.distance_vox = buffer_of<float>(s[3]);
     set.band_vox = nb::cast<double>(s[4]);
-    if (set.distance_vox.size() != set.voxels.voxel_count()) refuse_state(kType);
+    if (!is_sound(set)) refuse_state(kType);
     return {std::make_shared<const LevelSet>(std::move(set))};
   } catch (const nb::cast_error&) {
     refuse_state(kType);

@@ -74,6 +74,19 @@ void check_no_labels(const LabelReading& labels) {
     refuse_use(std::string(option) + " is for volumes of labels; leave it out");
 }
 
+/// What marks faces needs of a reference.
+TriangleSoup triangles_of(TriangleSoup surface) {
+  TriangleSoup alone;
+  alone.vertices = std::move(surface.vertices);
+  alone.triangles = std::move(surface.triangles);
+  return alone;
+}
+
+int64_t bytes_of(const TriangleSoup& surface) {
+  return int64_t(surface.vertices.size() * sizeof surface.vertices[0] +
+                 surface.triangles.size() * sizeof surface.triangles[0]);
+}
+
 VolumeReadOptions options_of(const InputRequest& request, const Context& context) {
   return {request.grid,        request.iso, context.memory_limit_bytes, request.creases,
           VolumeSides::sample, false,       request.keep_open};
@@ -267,8 +280,9 @@ void InputReader::read_level_set(const MeshSource& source, const InputRequest& r
 
 void InputReader::read_several(const MeshSource& source, const InputRequest& request) {
   if (request.iso) refuse_use("--iso is for one volume; several level sets are meshed where their values are 0");
-  std::optional<Input> reference;  // read first: what is wrong with it is said before the long work
-  if (!request.reference.empty()) reference = read_input(named_input(request.reference), context_, tell_);
+  std::optional<TriangleSoup> reference;  // read first: what is wrong with it is said before the long work
+  if (!request.reference.empty())
+    reference = triangles_of(read_input(named_input(request.reference), context_, tell_).soup);
   input_.facts.also = request.also;
   std::vector<std::unique_ptr<MeshSource>> others;
   std::vector<LevelSetFile> files{{&source, request.grid}};
@@ -278,7 +292,7 @@ void InputReader::read_several(const MeshSource& source, const InputRequest& req
     others.push_back(std::make_unique<MeshSource>(other.path, source.budget()));
     files.push_back({others.back().get(), other.grid});
   }
-  LevelSets sets = read_level_sets(files, context_.memory_limit_bytes);
+  LevelSets sets = read_level_sets(files, context_.memory_limit_bytes, reference ? bytes_of(*reference) : 0);
   for (const std::string& warning : sets.warnings) warn(warning);
   const std::string origin = counted(int64_t(sets.names.size()), "level set") + ", ";
   if (request.unite)
@@ -295,7 +309,7 @@ void InputReader::read_several(const MeshSource& source, const InputRequest& req
   std::vector<WallCrossing> crossings;
   hold(std::move(labels), origin, reference ? &crossings : nullptr);
   if (!reference) return;
-  const double off_vox = mark_faces_on_reference(reference->soup, request.reference, crossings, lattice, input_.soup);
+  const double off_vox = mark_faces_on_reference(*reference, request.reference, crossings, lattice, input_.soup);
   if (off_vox > 0)
     warn("no face lies on the reference " + request.reference + ", so all are inner: the nearest is " +
          readable_length(off_vox) +

@@ -105,6 +105,24 @@ struct NamedGrid {
   std::string name;
 };
 
+/// The same for two paths of one file.
+std::string place_of(const NamedGrid& grid) {
+  std::error_code failed;
+  const std::filesystem::path path = std::filesystem::weakly_canonical(grid.source->name(), failed);
+  return (failed ? grid.source->name() : path.string()) + ":" + grid.name;
+}
+
+void refuse_twice(const std::vector<NamedGrid>& grids) {
+  std::map<std::string, const NamedGrid*> first;
+  for (const NamedGrid& grid : grids)
+    if (const auto [at, is_new] = first.try_emplace(place_of(grid), &grid); !is_new) {
+      const std::string once = at->second->source->name() + ":" + grid.name,
+                        again = grid.source->name() + ":" + grid.name;
+      throw Error(ErrorCode::usage, "read",
+                  again + " is given twice" + (once == again ? "" : ", also as " + once) + "; leave one of them out");
+    }
+}
+
 /// The names of grids; where those are the same FILE:GRID, and where files have one name in two folders their paths.
 std::vector<std::string> names_apart(const std::vector<NamedGrid>& grids) {
   const auto named = [&](size_t length, const NamedGrid& grid) {
@@ -119,10 +137,6 @@ std::vector<std::string> names_apart(const std::vector<NamedGrid>& grids) {
     for (size_t i = 0; i < grids.size(); ++i) ++uses[names[i] = named(length[i], grids[i])];
     for (size_t i = 0; i < grids.size(); ++i) length[i] += uses[names[i]] > 1 ? 1 : 0;
   }
-  const auto twice = std::find(length.begin(), length.end(), size_t(3));
-  if (twice != length.end())
-    throw Error(ErrorCode::usage, "read",
-                names[size_t(twice - length.begin())] + " is given twice; leave one of them out");
   return names;
 }
 
@@ -148,12 +162,14 @@ bool fits(const std::string& name, const std::string& pattern) {
   return pattern.find_first_not_of('*', p) == std::string::npos;
 }
 
-LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory_limit_bytes) {
+LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory_limit_bytes, int64_t reference_bytes) {
   LevelSets sets;
+  sets.reference_bytes = reference_bytes;
   std::vector<NamedGrid> grids;
   for (const LevelSetFile& file : files)
     for (const std::string& grid : grids_of(file, sets.warnings)) grids.push_back({file.source, grid});
-  const std::vector<std::string> names = names_apart(grids);  // refuses those that are given twice
+  refuse_twice(grids);
+  const std::vector<std::string> names = names_apart(grids);
   for (const NamedGrid& grid : grids) add_grid(*grid.source, grid.name, memory_limit_bytes, sets);
   sets.names = names;
   return sets;

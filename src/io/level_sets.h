@@ -23,8 +23,9 @@ struct LevelSetFile {
 /// name of its grid, or FILE:GRID where that of another one is the same, with the path of the file where files have one
 /// name in two folders. Each is held as blocks before the next one is read. They need the bytes of the files. Throws:
 /// usage where a pattern fits no level set, or one with a flaw, for a grid that is given twice, and for files of other
-/// formats; out_of_memory over the limit; and as read_vdb_volume() and add_level_set()
-/// do.
-LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory_limit_bytes);
+/// formats; out_of_memory over the limit, of which the reference takes `reference_bytes`; and as read_vdb_volume() and
+/// add_level_set() do.
+LevelSets read_level_sets(const std::vector<LevelSetFile>& files, int64_t memory_limit_bytes,
+                          int64_t reference_bytes = 0);
 
 }  // namespace isoshell

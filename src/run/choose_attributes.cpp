@@ -89,6 +89,11 @@ void choose_attributes(Input& input, const std::optional<Names>& names, const st
   if (has_regions) warn_of_lost_regions(input, format, tell);
 }
 
+void free_all_but_files(TriangleSoup& soup) {
+  AttributeFiles files = std::move(soup.files);
+  (soup = {}).files = std::move(files);
+}
+
 std::shared_ptr<const SizingField> sizing_of_input(const Input& input, const std::string& text,
                                                    const Context& context) {
   return is_sizing_file(text) ? read_sizing(text, context.memory_limit_bytes)

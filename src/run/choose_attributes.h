@@ -21,6 +21,9 @@ namespace isoshell {
 void choose_attributes(Input& input, const std::optional<std::vector<std::string>>& names, const std::string& format,
                        bool has_regions, AttributeReport& report, const Tell& tell);
 
+/// Leaves the names of files alone: of a surface that is prepared nothing else is looked for any more.
+void free_all_but_files(TriangleSoup& soup);
+
 /// The sizing field that --sizing names: of a .vdb file, or an attribute of the input's vertices, chosen or not.
 /// Throws: as read_sizing and sizing_of_attribute do.
 std::shared_ptr<const SizingField> sizing_of_input(const Input& input, const std::string& text, const Context& context);

@@ -41,9 +41,9 @@ void drop_colors(TriangleMesh& mesh, AttributeReport& report) {
 
 }  // namespace
 
-void color_features(TriangleMesh& mesh, AttributeReport& report) {
+void color_features(TriangleMesh& mesh, AttributeReport& report, const Tell& tell) {
   const MeshFeatures& features = mesh.features;
-  if (features.patch.empty()) return;
+  if (features.patch.empty()) return tell(MessageKind::warning, "the result has no curves that colours could show");
   drop_colors(mesh, report);
   std::vector<Color> of_face, of_vertex(mesh.vertices.size());
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {

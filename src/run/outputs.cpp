@@ -173,6 +173,12 @@ std::vector<NamedFile> inputs_of(const RunRequest& r) {
   return files;
 }
 
+void check_whole_request(const RunRequest& r) {
+  check_request(r);
+  check_several(r.input);
+  check_level_set_is_asked(r);
+}
+
 void check_request(const RunRequest& r) {
   check_together(r.options);
   if (r.output.recenter.is_asked && r.stop_after != StopAfter::mesh)
@@ -200,7 +206,6 @@ void check_request(const RunRequest& r) {
 }
 
 void check_outputs(const RunRequest& r) {
-  check_several(r.input);
   if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty() ||
                            !r.level_set.path.empty()))
     refuse(

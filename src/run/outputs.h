@@ -22,8 +22,12 @@ std::vector<NamedFile> inputs_of(const RunRequest& request);
 /// The file of a sizing field, FIELD.vdb or FIELD.vdb:GRID; empty where it is an attribute of the input.
 std::string file_of_sizing(const std::string& sizing);
 
+/// check_request() of a request of which all is known: also where it reads from, and whether its level set is kept.
+/// Throws: as that does, and check_several(); usage for options of a level set that nothing asks for.
+void check_whole_request(const RunRequest& request);
+
 /// Every file that the run would write can be (see check_output_files). Throws: also unwritable_output when this build
-/// cannot write its format; and as check_several(), before a file is written.
+/// cannot write its format.
 void check_outputs(const RunRequest& request);
 
 /// A region's own file.

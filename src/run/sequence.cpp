@@ -33,7 +33,7 @@ class Sequence {
         chain_(request.is_coherent),
         numbers_(frame_numbers(request.frames)),
         progress_(int64_t(numbers_.size())) {
-    check_request(request_.frame);
+    check_whole_request(request_.frame);
     check_sequence(request_);
   }
 

@@ -92,10 +92,26 @@ bool makes_level_set_of(const RunRequest& request, LevelSetOf of) {
   return makes_level_set(request) && request.level_set.of == of;
 }
 
+/// Of the input or the result, kept or written.
+bool asks_for_level_set(const RunRequest& request) {
+  return request.level_set.keep || !request.level_set.path.empty() || request.stop_after == StopAfter::level_set;
+}
+
+void check_level_set_is_asked(const RunRequest& request) {
+  if (asks_for_level_set(request)) return;
+  const LevelSetRequest& asked = request.level_set;
+  const char* const option = asked.as_half                                 ? "--level-set-half"
+                             : asked.of == LevelSetOf::result              ? "--level-set-of"
+                             : request.options.was_given("level-set-band") ? "--level-set-band"
+                                                                           : nullptr;
+  if (option)
+    refuse_use(std::string(option) +
+               " is of a level set, and none is asked for; name its file by --save-level-set, or leave it out");
+}
+
 void check_level_set(const RunRequest& request) {
   const LevelSetRequest& asked = request.level_set;
-  const bool is_asked = asked.keep || !asked.path.empty() || request.stop_after == StopAfter::level_set;
-  if (!is_asked) return;
+  if (!asks_for_level_set(request)) return;
   if (!request.options.values.regions.empty())
     refuse_use("a level set is of one solid; leave out --regions, or the level set");
   if (asked.of == LevelSetOf::input) return;
@@ -113,10 +129,14 @@ void refuse_level_set_of_regions(const RunRequest& request) {
   if (makes_level_set(request)) refuse_regions();
 }
 
-LevelSet level_set_of_run(const LevelSetRequest& request, const Prepared& prepared, const TriangleMesh& mesh,
+LevelSet level_set_of_run(const RunRequest& request, const Prepared& prepared, const TriangleMesh& mesh,
                           Context& context) {
-  if (request.of == LevelSetOf::input) return to_host(level_set(prepared, request.band_vox, context));
-  return level_set_of_result(mesh, prepared.surface().frame, request.band_vox, context);
+  const double band_vox = request.level_set.band_vox;
+  LevelSet set = request.level_set.of == LevelSetOf::input
+                     ? to_host(level_set(prepared, band_vox, context))
+                     : level_set_of_result(mesh, prepared.surface().frame, band_vox, context);
+  if (!level_set_files(request).empty()) check_level_set_write(set, level_set_write_options(request));
+  return set;
 }
 
 LevelSetWriteOptions level_set_write_options(const RunRequest& request) {

@@ -27,12 +27,15 @@ bool makes_level_set_of(const RunRequest& request, LevelSetOf of);
 
 /// Throws: usage where a level set is asked for that the other options leave no solid, or no mesh, for.
 void check_level_set(const RunRequest& request);
+/// Throws: usage for options of a level set where none is asked for.
+void check_level_set_is_asked(const RunRequest& request);
 /// Throws: usage where a level set is asked for, of an input that parts regions.
 void refuse_level_set_of_regions(const RunRequest& request);
 
 /// What the request asks for: level_set() of the prepared surface; or the same of the solid that the mesh bounds, exact
-/// to its triangles. On the host. Throws: as level_set() and prepare(); usage for a mesh that is not closed.
-LevelSet level_set_of_run(const LevelSetRequest& request, const Prepared& prepared, const TriangleMesh& mesh,
+/// to its triangles. On the host. Throws: as level_set(), prepare() and, where it is written, check_level_set_write();
+/// usage for a mesh that is not closed.
+LevelSet level_set_of_run(const RunRequest& request, const Prepared& prepared, const TriangleMesh& mesh,
                           Context& context);
 
 LevelSetWriteOptions level_set_write_options(const RunRequest& request);

@@ -40,7 +40,7 @@ void refuse_use(const char* message) { throw Error(ErrorCode::usage, "options", 
 class RunSteps::Run {
  public:
   explicit Run(RunRequest request) : request_(std::move(request)), options_(request_.options) {
-    check_request(request_);
+    check_whole_request(request_);
     if (options_.lengths_decide()) options_.values.vertices.reset();
     record_.options = options_.values;
     record_.output = request_.output;
@@ -127,7 +127,8 @@ class RunSteps::Run {
     prepared_ = timed("prepare", [&] { return prepared_from(*input_); });
     progress_.expect(*prepared_);
     if (!attributes.empty()) input_->soup.attributes = std::move(attributes);
-    if (input_->soup.attributes.empty() && !(has_regions && measures_distance(request_))) free_soup();
+    if (input_->soup.attributes.empty() && !(has_regions && measures_distance(request_)))
+      free_all_but_files(input_->soup);
     record_.report = prepared_->report();
     for (const std::string& text : warnings_of_repair(record_.report, record_.input.name(), has_regions)) warn(text);
     if (measures_all(request_) && !has_regions)
@@ -154,7 +155,7 @@ class RunSteps::Run {
     prepare();
     for (const std::string& path : stage_files(request_, request_.save_shell, StopAfter::shell))
       save_shell(path, request_.overwrite);
-    make_level_set(LevelSetOf::input, {});
+    write_level_set(made_level_set(LevelSetOf::input, {}));
     if (request_.stop_after == StopAfter::shell || request_.stop_after == StopAfter::level_set) return result({});
     relax();
     const std::vector<std::string> voronoi = stage_files(request_, request_.save_voronoi, StopAfter::voronoi);
@@ -174,16 +175,15 @@ class RunSteps::Run {
     if (input_->grids)
       timed("sample", [&] { add_grid_attributes(*input_, record_.output.format, mesh, record_.attributes, teller()); });
     if (const auto& previous = options_.values.previous) add_motion_attributes(*previous, mesh);
-    if (options_.values.color_features && mesh.features.patch.empty())
-      warn("the result has no curves that colours could show");
-    if (options_.values.color_features) color_features(mesh, record_.attributes);
+    if (options_.values.color_features) color_features(mesh, record_.attributes, teller());
+    const std::shared_ptr<const LevelSet> of_result = made_level_set(LevelSetOf::result, mesh);  // may refuse the mesh
     if (const std::string& path = record_.output.path; !path.empty())
       write_step("write", path,
                  [&] { write_output(mesh, request_, options_.values.color_features, record_.files.front()); });
     for (const RegionFile& file : files_of_kept(region_files_, mesh, [&](const std::string& text) { warn(text); }))
       write_step("write", file.path, [&] { write_region(file, mesh, request_.overwrite, record_); });
     for (const std::string& text : warnings_of_files(record_.files, offset_to_origin(mesh))) warn(text);
-    make_level_set(LevelSetOf::result, mesh);
+    write_level_set(of_result);
     return result(std::move(mesh));
   }
 
@@ -194,11 +194,17 @@ class RunSteps::Run {
                [&] { isoshell::save_shell(path, p.surface(), p.samples(), p.shell(), stage_options(overwrite)); });
   }
 
-  void make_level_set(LevelSetOf of, const TriangleMesh& mesh) {
-    if (!makes_level_set_of(request_, of)) return;
+  /// Null where none is asked for.
+  std::shared_ptr<const LevelSet> made_level_set(LevelSetOf of, const TriangleMesh& mesh) {
+    if (!makes_level_set_of(request_, of)) return nullptr;
     const auto set = std::make_shared<const LevelSet>(
-        timed("level-set", [&] { return level_set_of_run(request_.level_set, *prepared_, mesh, *context_); }));
+        timed("level-set", [&] { return level_set_of_run(request_, *prepared_, mesh, *context_); }));
     if (request_.stop_after == StopAfter::level_set) record_.report.grid.active_voxels = set->voxels.voxel_count();
+    return set;
+  }
+
+  void write_level_set(const std::shared_ptr<const LevelSet>& set) {
+    if (!set) return;
     for (const std::string& path : level_set_files(request_))
       write_step("save-level-set", path, [&] { save_level_set(path, *set, level_set_write_options(request_)); });
     if (request_.level_set.keep) set_ = set;
@@ -280,12 +286,6 @@ class RunSteps::Run {
     if (!input.stage) return isoshell::prepare(surface(), options, *context_);
     if (input.stage->seeds) options.features = {Features::Creases::off, 0};  // they stand on the sheet
     return isoshell::prepare(std::move(input.stage->surface), input.stage->info.closing_vox, options, *context_);
-  }
-
-  /// Nothing but attributes that go over to the result is looked for on it any more.
-  void free_soup() {
-    AttributeFiles files = std::move(input_->soup.files);
-    (input_->soup = {}).files = std::move(files);
   }
 
   TriangleMesh triangulated(bool keeps_seeds) {

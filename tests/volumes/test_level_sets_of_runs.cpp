@@ -8,6 +8,7 @@
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/each_voxel.h"
 #include "isoshell/run/run.h"
+#include "isoshell/run/steps.h"
 #include "support/catch.h"
 #include "support/refusals.h"
 #include "support/shapes.h"
@@ -209,6 +210,32 @@ TEST_CASE("level set of a run: that of a hollow result is positive in the hollow
     in_hollow += radius < .45 ? 1 : 0;
   });
   CHECK(in_hollow > 1000);
+}
+
+TEST_CASE("level set of a run: where that of the result cannot be, no file is written", "[level_set]") {
+  TemporaryFile mesh("mesh.ply"), set("set.vdb");
+  RunRequest request = request_of(60, 40);
+  request.output = named_output(mesh.path, "", StopAfter::mesh);
+  request.level_set.path = set.path;
+  request.level_set.as_half = true;
+  for (const LevelSetOf of : {LevelSetOf::result, LevelSetOf::input}) {
+    request.level_set.of = of;
+    TestContext context;
+    const Error error = error_of([&] { run(input_of(shapes::sphere(kMiddle, 1e-6, 24), "ball"), request, context); });
+    CHECK(says(error, "leave out --level-set-half"));
+    CHECK_FALSE(std::filesystem::exists(mesh.path));
+  }
+}
+
+TEST_CASE("level set of a run: options of one that is not asked for are refused", "[level_set]") {
+  RunRequest request = request_of(60, 40);
+  request.level_set.as_half = true;
+  CHECK(says(error_of([&] { RunSteps{request}; }), "--level-set-half is of a level set, and none is asked for"));
+  request.level_set = {};
+  request.level_set.of = LevelSetOf::result;
+  CHECK(says(error_of([&] { RunSteps{request}; }), "--level-set-of is of a level set"));
+  request.level_set.keep = true;
+  RunSteps{request};
 }
 
 TEST_CASE("level set of a run: what has no result with an inside is refused before it begins", "[level_set]") {

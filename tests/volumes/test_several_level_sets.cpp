@@ -56,7 +56,21 @@ TEST_CASE("level sets: files of one name in two folders are told apart, and no g
   CHECK(input.facts.also == request.also);
   request.also = {paths[0]};
   CHECK(says(error_of([&] { read(request); }), "piece.vdb:surface is given twice; leave one of them out"));
+  request.also = {one.path + "/./piece.vdb"};
+  const Error again = error_of([&] { read(request); });
+  CHECK(says(again, "/./piece.vdb:surface is given twice, also as " + paths[0] + ":surface; leave one of them out"));
   for (const std::string& folder : {one.path, other.path}) std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("level sets: a reference takes its part of the limit of memory", "[regions][vdb]") {
+  const TemporaryFile file("pieces.vdb");
+  write(file.path, {level_set("a", ball(-.3, .4)), level_set("b", ball(.3, .4))});
+  ReadingBudget budget(0);
+  const MeshSource source(file.path, budget);
+  const int64_t limit_bytes = 100'000'000;
+  CHECK(read_level_sets({{&source, "*"}}, limit_bytes).blocks.size() == 2);
+  const Error error = error_of([&] { read_level_sets({{&source, "*"}}, limit_bytes, limit_bytes - 1000); });
+  CHECK(error.code() == ErrorCode::out_of_memory);
 }
 
 TEST_CASE("level sets: a reference that cannot be read is refused before they are", "[regions][vdb]") {

@@ -38,6 +38,10 @@ void check_lattice(const ScalarField& field, const LevelSets& sets) {
     }
 }
 
+std::string beside(int64_t reference_bytes) {
+  return reference_bytes > 0 ? ", the reference " + readable_bytes(reference_bytes) : "";
+}
+
 }  // namespace
 
 int64_t LevelSets::bytes() const {
@@ -48,12 +52,13 @@ int64_t LevelSets::bytes() const {
 
 int64_t left_beside(const LevelSets& sets, int64_t memory_limit_bytes) {
   if (memory_limit_bytes <= 0) return 0;
-  const int64_t left = memory_limit_bytes - sets.bytes();
+  const int64_t left = memory_limit_bytes - sets.bytes() - sets.reference_bytes;
   if (left <= 0)
     throw Error(ErrorCode::out_of_memory, "read",
                 sets.file + ": " + counted(int64_t(sets.blocks.size()), "level set") + " of those to be read take " +
-                    readable_bytes(sets.bytes()) + ", and nothing is left of the limit of " +
-                    readable_bytes(memory_limit_bytes) + "; raise --max-memory, or resample them coarser");
+                    readable_bytes(sets.bytes()) + beside(sets.reference_bytes) +
+                    ", and nothing is left of the limit of " + readable_bytes(memory_limit_bytes) +
+                    "; raise --max-memory, or resample them coarser");
   return left;
 }
 

@@ -16,8 +16,9 @@ struct LevelSets {
   std::string file, title, grid_class;  ///< of the first one
   AffineMap to_world;
   double background = INFINITY;  ///< the least
+  int64_t reference_bytes = 0;   ///< of the surface that is held beside them
 
-  int64_t bytes() const;
+  int64_t bytes() const;  ///< without those of the reference
 };
 
 /// What is left of a limit in bytes beside these; 0 where there is no limit. Throws: out_of_memory where nothing is.
