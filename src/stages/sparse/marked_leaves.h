@@ -23,7 +23,7 @@ struct MarkBlocks {
     runs(i, [this](int x, int y, int z0, int z1) {
       for (int z = z0 & ~15; z <= z1; z += 16) {
         uint32_t& mark = table[blocks.place(x, y, z)];
-        if (!mark) atomic_or(mark, 1u);
+        if (!atomic_load(mark)) atomic_or(mark, 1u);
       }
     });
   }
@@ -68,7 +68,7 @@ struct MarkLeaves {
         const int bit = (x & 15) << 8 | (y & 15) << 4;
         const uint64_t run = ((uint64_t(2) << hi) - (uint64_t(1) << lo)) << (bit & 63);
         uint64_t& word = words[int64_t(table[blocks.place(x, y, z)]) * 64 + (bit >> 6)];
-        if ((word & run) != run) atomic_or(word, run);
+        if ((atomic_load(word) & run) != run) atomic_or(word, run);
       }
     });
   }
@@ -123,7 +123,7 @@ struct EnterVoxel {
     const int offset = offset_in_leaf(v);
     uint64_t& word = mask[number(leaf_of_voxel(v))].word[offset >> 6];
     const uint64_t bit = uint64_t(1) << (offset & 63);
-    if (!(word & bit)) atomic_or(word, bit);
+    if (!(atomic_load(word) & bit)) atomic_or(word, bit);
   }
 };
 
