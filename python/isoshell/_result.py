@@ -151,10 +151,10 @@ class Result:
 
     @property
     def level_set(self) -> Optional[LevelSet]:
-        """Signed distances around the closed surface, after remesh(..., save_level_set=True); otherwise None.
+        """Signed distances, after remesh(..., save_level_set=True); otherwise None.
 
-        They are those of the source, which isoshell.level_set() makes without a mesh, or with level_set_of="result" of
-        the result. A result that is pickled loses it.
+        They are around the surface of the source, as isoshell.level_set() makes them without a mesh, or with
+        level_set_of="result" around the result. A result that is pickled loses it; it can be pickled by itself.
         """
         if self._level_set is None and self._made.level_set is not None:
             self._level_set = LevelSet(self._made.level_set)

@@ -73,8 +73,8 @@ InputRequest named_input(const std::string& name, const std::string& format = ""
 /// The same with what `request` says of how it is read. Throws: as the other does.
 InputRequest named_input(const std::string& name, InputRequest request);
 
-/// Throws: usage where the request asks for what several level sets alone have, and is not for them, or for what these
-/// do not have together.
+/// Throws: usage where the request asks for a union or a reference and is not for several level sets, for both of these
+/// at once, or for all grids beside several level sets.
 void check_several(const InputRequest& request);
 
 /// What is known of an input before the first stage.
