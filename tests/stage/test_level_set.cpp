@@ -10,6 +10,7 @@
 #include "support/catch.h"
 #include "support/refusals.h"
 #include "support/shapes.h"
+#include "support/solid_soup.h"
 #include "support/test_context.h"
 #include "voxel/leaf.h"
 
@@ -183,6 +184,21 @@ TEST_CASE("level set: a sheet without thickness has that of its crust", "[level_
   });
   CHECK(inside > 4000);
   CHECK(jumps(set) <= set.distance_vox.size() / 10000);
+}
+
+TEST_CASE("level set: a part that keeps handles narrower than edges has that of its own surface", "[level_set]") {
+  const TriangleSoup part = shapes::sieve(4, 3, 1, 2);
+  RemeshOptions options = on_grid(64);
+  options.vertices = 300;  // so few that the sheet is grown
+  options.features = {};
+  TestContext context;
+  const Prepared prepared = prepare(part, options, context);
+  CHECK(prepared.report().grid.grown_vox > 0);
+  const LevelSet set = to_host(level_set(prepared, kBandVox, context));
+  for_each_nth(set, 20, [&](WorldPoint p, double distance) {
+    REQUIRE(std::abs(distance) == Approx(distance_to(part, p)).margin(1e-6));
+  });
+  CHECK(jumps(set) == 0);
 }
 
 TEST_CASE("level set: it has the same bytes for any number of threads and on a device", "[level_set]") {
