@@ -46,7 +46,7 @@ VertexGraph with_asked_lengths(FineMesh& fine, const LatticeFrame& frame, const 
   }
 }
 
-/// Edges that flips leave alone: those at which the surface turns, or ends, or parts. Keys, ascending.
+/// Edges that have not two triangles in one plane: keys, ascending.
 std::vector<uint64_t> turning_edges(const FineMesh& mesh) {
   const auto at = [&](uint32_t h) { return mesh.position[mesh.triangles[h / 3][h % 3]]; };
   std::vector<uint64_t> edges;

@@ -42,6 +42,8 @@ class EdgeSheets {
     while (first < count && (is_tie(first) || is_tie((first + count - 1) % count))) ++first;
     if (first == count) return true;
     std::rotate(sheets_.begin(), sheets_.begin() + int64_t(first), sheets_.end());
+    for (Sheet& sheet : sheets_)
+      if (sheet.angle < sheets_[0].angle) sheet.angle += 2 * std::acos(-1.);
     for (size_t i = 1; i < count; ++i) {
       for (size_t j = i; sheets_[i].before != sheets_[i - 1].behind && j + 1 < count && is_tie(j); ++j)
         std::swap(sheets_[i], sheets_[j + 1]);

@@ -25,7 +25,6 @@ constexpr double kNearMost = 1.1;        ///< times as many are no reason to loo
 constexpr int kMostLooks = 3;            ///< for creases that fit; edges are shorter where curves face others, once cut
 constexpr double kMoreThanAsked = .08;   ///< vertices that lengths ask for, over those that there are
 constexpr double kFewestByLength = 0.4;  ///< of the vertices: edges are 1 / sqrt(.4) times as long as without curves
-constexpr double kLeastRate = 1. / 64;   ///< at which curves have fewer seeds as lengths grow: a segment is whole
 constexpr int kMostCuts = 3;             ///< for lengths that leave curves and patches their share
 
 /// Six times the volume inside: below 0 where faces look inwards. Measured from a vertex, for the sake of digits.
@@ -135,7 +134,7 @@ struct CutPlan {
 /// Lengths are such that triangles fill the area with the number of vertices, but corners and short curves between them
 /// may take more than that. Then all lengths are longer, as much as it takes for curves and the patches between them to
 /// share the vertices evenly, or as near as some cuts come: at first a vertex fewer by length is taken to be one fewer
-/// of the result, then as many as it was. Throws: NoRoom where they would be too long.
+/// of the result, then as many as it was last. Throws: NoRoom where they would be too long.
 std::shared_ptr<CutSurface> cut_evenly(const CutPlan& plan, const CurveNetwork& network, Context& context) {
   CutOptions how = plan.how;
   const int64_t vertices = how.vertices, fewest = std::llround(std::ceil(kFewestByLength * double(vertices)));
@@ -150,9 +149,10 @@ std::shared_ptr<CutSurface> cut_evenly(const CutPlan& plan, const CurveNetwork& 
       throw NoRoom("features", "curves, and the patches between them, take more than " + std::to_string(cut->seeds) +
                                    " vertices; use more vertices, or a higher angle from which on edges are features");
     if (cuts == kMostCuts) return cut;
-    const double rate = cuts == 1 ? 1 : std::clamp((before - surplus) / gone, kLeastRate, 1.);
+    const double rate = cuts == 1 ? 1 : std::min((before - surplus) / gone, 1.);
+    const auto most = double(how.vertices - fewest);
     before = surplus;
-    gone = std::min(std::round(surplus / rate), double(how.vertices - fewest));
+    gone = rate > 0 ? std::min(std::ceil(surplus / rate), most) : most;
     how.vertices -= int64_t(gone);
     how.edge_length_world = edge_length_for(plan.mesh, network, how.vertices);
   }

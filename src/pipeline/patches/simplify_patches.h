@@ -25,9 +25,10 @@ class JoinedCheck {
   NewCrossings crossings_;
 };
 
-/// Edges are collapsed, what is not settled is evened out, vertices off curves are optimised where no triangles
-/// intersect then, and angles beside curves are widened. None where that is not valid. `sum`:
-/// what the optimisation did is added. Cost: as coarsen, even_out, optimize_mesh and widen.
+/// Triangles that intersect are collapsed unless the result may have those of its input, then other edges are; what is
+/// not settled is evened out, vertices off curves are optimised where no triangles intersect then, and angles beside
+/// curves are widened. None where that is not valid. `sum`: what the optimisation did is added. Cost: as
+/// collapse_crossings, coarsen, even_out, optimize_mesh and widen.
 std::optional<JoinedPatches> simplify_patches(WallMesh mesh, const PatchOptions& options, JoinedCheck& check,
                                               OptimizeReport& sum, Run& run);
 
