@@ -9,6 +9,7 @@
 #include "stages/labels/label_body.h"
 #include "stages/relax/relax_sheet_body.h"
 #include "support/catch.h"
+#include "support/pass_results.h"
 #include "support/relax_sheets.h"
 #include "support/shapes.h"
 #include "support/test_context.h"
@@ -32,6 +33,26 @@ std::vector<uint32_t> labels_with_capacity(const Sheet& sheet, const SeedSet& se
                                              spacing,
                                              {labels.data(), int64_t(labels.size())}});
   return labels;
+}
+
+/// Two wide, along x, with four vertices at each of so many steps.
+TriangleSoup square_tube(uint32_t steps) {
+  TriangleSoup soup;
+  for (uint32_t x = 0; x <= steps; ++x)
+    for (const auto& [y, z] : std::vector<std::pair<double, double>>{{0, 0}, {2, 0}, {2, 2}, {0, 2}})
+      soup.vertices.push_back({double(x), y, z});
+  const auto quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    soup.triangles.push_back({a, b, c});
+    soup.triangles.push_back({a, c, d});
+  };
+  quad(3, 2, 1, 0);
+  for (uint32_t first = 0; first < 4 * steps; first += 4)
+    for (uint32_t i = 0; i < 4; ++i) {
+      const uint32_t a = first + i, b = first + (i + 1) % 4;
+      quad(a, b, b + 4, a + 4);
+    }
+  quad(4 * steps, 4 * steps + 1, 4 * steps + 2, 4 * steps + 3);
+  return soup;
 }
 
 SeedSpacing spacing_of(const Sheet& sheet, const SeedSet& seeds, TestContext& context) {
@@ -69,6 +90,22 @@ TEST_CASE("labels: each sheet vertex has its nearest seed, the penalty counted, 
         CHECK(labels_with_capacity<3>(sheet, seeds, spacing, context) == expected);
       }
     }
+}
+
+TEST_CASE("labels: along a tube that has lost its seeds but at one end, the nearest is found wherever it is",
+          "[relax][stage]") {
+  TestContext context;
+  const Sheet tube = sheet_of_soup(square_tube(8000), 8192, 1, 0);
+  const int64_t count = 3500;  // vertices are in the order of x
+  SeedSet seeds{Buffer<PointQ8>(count), Buffer<Normal8>(count), Buffer<uint32_t>(count), {}};
+  for (int64_t s = 0; s < count; ++s) {
+    seeds.position[s] = tube.position[s];
+    seeds.normal[s] = tube.normal[s];
+    seeds.home[s] = uint32_t(s);
+  }
+  const std::vector<uint32_t> expected = brute_force_labels(tube, seeds, spacing_of(tube, seeds, context));
+  CHECK(labels_by<CpuExecutor>(tube, seeds) == expected);
+  CHECK(labels_by<PlainExecutor>(tube, seeds) == expected);
 }
 
 TEST_CASE("lengths: mass and share of a triangle follow the powers, at every area and ratio", "[lengths]") {

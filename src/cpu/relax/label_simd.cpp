@@ -255,7 +255,7 @@ struct LabelBlockSimd {
     if (near.count <= NearSeeds::kMost && seeds.fit(near) && seeds.cut_penalty(limit) && seeds.take(near))
       return seeds.label(
           plain, [member](int i) { return member[i]; }, count);
-    for (int i = 0; i < count; ++i) plain.label_directly(limit, member[i], member[i] + 1);
+    plain.label_members(bounds, member, count);
   }
 
   // Both take a vertex in the bounds, and return a limit that no label's cost exceeds.

@@ -187,6 +187,21 @@ struct LabelBlock {
     }
   }
 
+  /// Labels some of a block's vertices, around which the bounds are. Seeds may be far from all of them, as where a thin
+  /// tube has lost its own: a search from each vertex would pass all the empty cells between.
+  ISOSHELL_HD void label_members(const Bounds& bounds, const int64_t* member, int members) const {
+    LabelSeed candidates[kCapacity];
+    int64_t limit;
+    const int count = gather(member[0], bounds, candidates, limit);
+    if (count > kCapacity) {
+      for (int m = 0; m < members; ++m) label_directly(limit, member[m], member[m] + 1);
+      return;
+    }
+    sort_by_id(candidates, count);
+    for (int m = 0; m < members; m += kMembers)
+      label_octant(member + m, members - m < kMembers ? members - m : kMembers, candidates, count);
+  }
+
   /// Keeps the smallest (cost, id) of the patch's seeds that it is shown.
   struct CheapestSeed {
     const LabelBlock& block;
