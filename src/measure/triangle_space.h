@@ -63,7 +63,7 @@ class TriangleSpace {
     for (const CornersOfTriangle& t : made) whole = joined(whole, box(t));
     return for_each_place(whole, [&](const Place& place, const Cell& cell) {
       for (const Boxed& t : place.boxed) {
-        if (!boxes_meet(t.box, whole) || cell != cell_of(largest_of(t.box.min, whole.min)) ||
+        if (!boxes_meet(t.box, whole) || !is_in(cell, largest_of(t.box.min, whole.min)) ||
             std::find(replaced.begin(), replaced.end(), t.number) != replaced.end())
           continue;
         for (const CornersOfTriangle& m : made)
@@ -72,36 +72,44 @@ class TriangleSpace {
       return true;
     });
   }
-  /// The same where they may meet what those that they replace met. Cost: looks at each of these, too.
+  /// The same where they may meet what those that they replace met. Cost: looks at each of these, too, and sorts them.
   bool meet_no_more(const std::vector<CornersOfTriangle>& made, const std::vector<uint32_t>& replaced) const {
-    const auto is_in = [](const std::vector<uint32_t>& list, uint32_t number) {
-      return std::find(list.begin(), list.end(), number) != list.end();
-    };
-    std::vector<uint32_t> before;
-    bool met_each_other = false;
+    std::vector<uint32_t> before = replaced;
+    bool met_any = false, met_each_other = false;
     for (const uint32_t r : replaced)
       for_each_met(corners_[r], [&](uint32_t other) {
         if (other == r) return;
         before.push_back(other);
-        met_each_other = met_each_other || is_in(replaced, other);
+        met_any = true;
+        met_each_other = met_each_other || std::find(replaced.begin(), replaced.end(), other) != replaced.end();
       });
-    if (before.empty()) return false;
-    bool meet_more = false;
-    for (size_t i = 0; i < made.size() && !meet_more; ++i) {
-      for (size_t j = 0; j < i && !met_each_other; ++j) meet_more = meet_more || meet(made[i], made[j]);
-      for_each_met(made[i], [&](uint32_t t) { meet_more = meet_more || !(is_in(replaced, t) || is_in(before, t)); });
+    if (!met_any) return false;
+    std::sort(before.begin(), before.end());
+    const auto is_new = [&](uint32_t t) { return !std::binary_search(before.begin(), before.end(), t); };
+    for (size_t i = 0; i < made.size(); ++i) {
+      for (size_t j = 0; j < i && !met_each_other; ++j)
+        if (meet(made[i], made[j])) return false;
+      if (meets_any(made[i], is_new)) return false;
     }
-    return !meet_more;
+    return true;
   }
   /// Calls use(number) for each triangle that a triangle meets outside of corners that they share, or that it is.
   template <class Use>
   void for_each_met(const CornersOfTriangle& triangle, Use use) const {
+    meets_any(triangle, [&](uint32_t number) {
+      use(number);
+      return false;
+    });
+  }
+  /// Whether one of these is so, by is(number). Looks no further once it is.
+  template <class Is>
+  bool meets_any(const CornersOfTriangle& triangle, Is is) const {
     const BoxQ8 around = box(triangle);
-    for_each_place(around, [&](const Place& place, const Cell& cell) {
+    return !for_each_place(around, [&](const Place& place, const Cell& cell) {
       for (const Boxed& t : place.boxed)
-        if (boxes_meet(t.box, around) && cell == cell_of(largest_of(t.box.min, around.min)) &&
-            meet(triangle, corners_[t.number]))
-          use(t.number);
+        if (boxes_meet(t.box, around) && is_in(cell, largest_of(t.box.min, around.min)) &&
+            meet(triangle, corners_[t.number]) && is(t.number))
+          return false;
       return true;
     });
   }
@@ -129,6 +137,13 @@ class TriangleSpace {
   Cell cell_of(const PointQ8& p) const {
     const auto on_axis = [&](int32_t at) { return (int64_t(at) + (int64_t(1) << 40)) / cell_q8_; };
     return {on_axis(p.x), on_axis(p.y), on_axis(p.z)};
+  }
+  /// As cell_of(p) == cell, without a division.
+  bool is_in(const Cell& cell, const PointQ8& p) const {
+    const auto on_axis = [&](int64_t number, int32_t at) {
+      return uint64_t(int64_t(at) + (int64_t(1) << 40) - number * cell_q8_) < uint64_t(cell_q8_);
+    };
+    return on_axis(cell[0], p.x) && on_axis(cell[1], p.y) && on_axis(cell[2], p.z);
   }
   template <class Visit>
   bool for_each_place(const BoxQ8& box, Visit visit) const {

@@ -158,10 +158,33 @@ bool is_beside_plane(const CornersAt<Point>& t, const CornersAt<Point>& of) {
   return low == high && low != 0;
 }
 
+/// Whether triangles share one corner, and the side opposite of it of neither reaches the box of the other: they meet
+/// there only. Most of those of a fan do that have many between them.
+template <class Point>
+bool are_apart_but_for_corner(const CornersAt<Point>& s, const CornersAt<Point>& t) {
+  int shared = 0, corner_s = 0, corner_t = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (s.id[i] == t.id[j]) ++shared, corner_s = i, corner_t = j;
+  if (shared != 1) return false;
+  const auto is_off = [](const CornersAt<Point>& of, int corner, const CornersAt<Point>& other) {
+    const Point &a = of.at[(corner + 1) % 3], &b = of.at[(corner + 2) % 3];
+    const auto on_axis = [](auto p, auto q, auto c, auto d, auto e) {
+      return (p < c && p < d && p < e && q < c && q < d && q < e) ||
+             (p > c && p > d && p > e && q > c && q > d && q > e);
+    };
+    return on_axis(a.x, b.x, other.at[0].x, other.at[1].x, other.at[2].x) ||
+           on_axis(a.y, b.y, other.at[0].y, other.at[1].y, other.at[2].y) ||
+           on_axis(a.z, b.z, other.at[0].z, other.at[1].z, other.at[2].z);
+  };
+  return is_off(s, corner_s, t) && is_off(t, corner_t, s);
+}
+
 /// As triangles_intersect, sooner where most triangles lie beside each other, as neighbours do.
 template <class Point>
 bool triangles_intersect_apart(const CornersAt<Point>& s, const CornersAt<Point>& t) {
-  return !is_beside_plane(t, s) && !is_beside_plane(s, t) && triangles_intersect(s, t);
+  return !are_apart_but_for_corner(s, t) && !is_beside_plane(t, s) && !is_beside_plane(s, t) &&
+         triangles_intersect(s, t);
 }
 
 }  // namespace isoshell

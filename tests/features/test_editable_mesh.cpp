@@ -136,14 +136,17 @@ TEST_CASE("editable mesh: a flip puts the other diagonal into two triangles, in 
 
 TEST_CASE("editable mesh: a flip is refused on a curve, at a border, between patches, and where its edge is there",
           "[editable_mesh]") {
-  Parts with_curve = grid(), of_patches = grid(), pyramid;
+  Parts with_curve = grid(), of_patches = grid(), pyramid, reflex;
   with_curve.put_on_curve(kA, kD, 0);
   for (RegionTriangle& t : of_patches.triangles) t.patch = t.has(kC) ? 1 : 0;
   pyramid.vertices = {vertex_at(0, 0, 0), vertex_at(512, 0, 0), vertex_at(0, 512, 0), vertex_at(128, 128, 256)};
   for (const Corners& c : {Corners{0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) pyramid.add(c);
+  reflex.vertices = {vertex_at(0, 0, 0), vertex_at(0, 512, 0), vertex_at(-512, -512, 0), vertex_at(512, -128, 0)};
+  for (const Corners& c : {Corners{0, 1, 2}, {1, 0, 3}}) reflex.add(c);
   for (const auto& [parts, u, v] :
        {std::make_tuple(with_curve, kA, kD), std::make_tuple(of_patches, kA, kD),
-        std::make_tuple(grid(), grid_at(0, 0), grid_at(1, 0)), std::make_tuple(pyramid, uint32_t(1), uint32_t(3))}) {
+        std::make_tuple(grid(), grid_at(0, 0), grid_at(1, 0)), std::make_tuple(pyramid, uint32_t(1), uint32_t(3)),
+        std::make_tuple(reflex, uint32_t(0), uint32_t(1))}) {
     EditableMesh mesh = parts.mesh();
     const auto before = state_of(mesh);
     CHECK(!flip(mesh, u, v));
@@ -163,6 +166,24 @@ TEST_CASE("editable mesh: a flip over a ridge is refused where another triangle 
   const auto before = state_of(mesh);
   CHECK(!flip(mesh, 0, 1));
   CHECK(state_of(mesh) == before);
+}
+
+TEST_CASE("editable mesh: a fan in a plane is handed from one corner to the next by flips, and none looks at the rest",
+          "[editable_mesh]") {
+  constexpr uint32_t kFan = 20000, kFirst = kFan + 1, kNext = kFan + 2;
+  Parts parts;
+  for (uint32_t i = 0; i <= kFan; ++i) parts.vertices.push_back(vertex_at(4. * i, 65536, 0));
+  for (const double x : {0., 1024.}) parts.vertices.push_back(vertex_at(x, 0, 0));
+  for (uint32_t i = 0; i < kFan; ++i) parts.add({kFirst, i + 1, i});
+  parts.add({kFirst, kNext, kFan});
+  EditableMesh mesh(parts.vertices, parts.triangles, Size::many);
+  mesh.keep_apart(65536);
+  MeshChange change;
+  for (uint32_t i = kFan; i > 0; --i) {
+    const uint32_t t = mesh.find_around(i, [&](const RegionTriangle& s) { return s.edge_between(i, kFirst) < 3; });
+    REQUIRE(mesh.flip(t, mesh.triangles()[t].edge_between(i, kFirst), change, always));
+  }
+  CHECK((mesh.around(kFirst).size() == 1 && mesh.around(kNext).size() == kFan + 1));
 }
 
 TEST_CASE("editable mesh: a collapse takes out a vertex and the triangles at its edge", "[editable_mesh]") {

@@ -89,7 +89,8 @@ bool EditableMesh::list_flip(uint32_t triangle, size_t edge, MeshChange& change)
   const RegionTriangle& t = triangles_[triangle];
   if (t.is_gone() || t.curve[edge] != kNone) return false;
   const uint32_t a = t.corner[edge], b = t.corner[(edge + 1) % 3], c = t.corner[(edge + 2) % 3];
-  const uint32_t other = find_around(b, [&](const RegionTriangle& s) { return s.edge_between(b, a) < 3; });
+  const uint32_t other =
+      find_around(with_fewer(a, b), [&](const RegionTriangle& s) { return s.edge_between(b, a) < 3; });
   if (other == kNone) return false;
   const RegionTriangle& s = triangles_[other];
   const size_t back = s.edge_between(b, a);
@@ -194,8 +195,33 @@ void EditableMesh::add(const RegionTriangle& t) {
 
 void EditableMesh::remove(uint32_t triangle) { replace(triangle, kGone); }
 
+/// Whether a flip's four corners are the corners of a convex part of a plane on the lattice. What it makes covers what
+/// was there, so it meets what that met.
+bool EditableMesh::is_in_plane(const MeshChange& flip) const {
+  const auto on_lattice = [&](size_t corner) { return rounded_down(at(flip.made[0].corner[corner])); };
+  const PointQ8 a = on_lattice(0), d = on_lattice(1), c = on_lattice(2), b = rounded_down(at(flip.made[1].corner[0]));
+  const int axis = best_axis(a, b, c);
+  if (axis < 0 || side_of_plane(a, b, c, d) != 0) return false;
+  const auto a2 = seen_along(a, axis), b2 = seen_along(b, axis), c2 = seen_along(c, axis), d2 = seen_along(d, axis);
+  return turn(a2, b2, c2) * turn(a2, b2, d2) < 0 && turn(c2, d2, a2) * turn(c2, d2, b2) < 0;
+}
+
+/// Flips in a plane are made without a look at what is there: faces of a thousand corners have as many triangles beside
+/// each of them, and take a thousand flips.
+bool EditableMesh::commit_flip(MeshChange& change) {
+  const auto is_fixed = [&](const auto& t) { return has_only_fixed(t); };
+  if (std::any_of(change.made.begin(), change.made.end(), is_fixed) || !is_in_plane(change)) return commit(change);
+  make(change);
+  return true;
+}
+
 bool EditableMesh::commit(MeshChange& change) {
   if (!are_free(change)) return false;
+  make(change);
+  return true;
+}
+
+void EditableMesh::make(MeshChange& change) {
   for (const uint32_t t : change.replaced)
     if (!is_in(change.number, t)) replace(t, kGone);
   for (size_t i = 0; i < change.made.size(); ++i) {
@@ -208,7 +234,6 @@ bool EditableMesh::commit(MeshChange& change) {
   }
   for (const auto& [u, v, curve] : change.fused)
     for_each_side(u, v, [&, on = curve](const Side& s) { triangles_[s.triangle].curve[s.edge] = on; });
-  return true;
 }
 
 void EditableMesh::replace(uint32_t triangle, const RegionTriangle& by) {

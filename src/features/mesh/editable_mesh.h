@@ -109,7 +109,7 @@ class EditableMesh {
   /// Those that a vertex may be taken into, as far as its curve tells: of a corner none.
   void list_targets(uint32_t v, std::vector<uint32_t>& out) const;
   bool is_edge(uint32_t u, uint32_t v) const {
-    return find_around(u, [&](const RegionTriangle& t) { return t.has(u) && t.has(v); }) != kNone;
+    return find_around(with_fewer(u, v), [&](const RegionTriangle& t) { return t.has(u) && t.has(v); }) != kNone;
   }
   /// The curve of the edge between two vertices, kNone off curves; no value where there is no edge.
   std::optional<uint32_t> curve_between(uint32_t u, uint32_t v) const;
@@ -132,12 +132,16 @@ class EditableMesh {
       if (other != triangle) use(other);
     });
   }
+  /// Whether there is one.
+  bool meets_any(uint32_t triangle) const {
+    return space_->meets_any(corners(triangles_[triangle]), [&](uint32_t other) { return other != triangle; });
+  }
 
   /// Puts the other diagonal into two triangles of one patch. Whether the change was made, here and below.
   template <class Allow>
   bool flip(uint32_t triangle, size_t edge, MeshChange& change, Allow allow) {
     return list_flip(triangle, edge, change) && allow() &&
-           !is_edge(change.made[1].corner[1], change.made[1].corner[2]) && commit(change);
+           !is_edge(change.made[1].corner[1], change.made[1].corner[2]) && commit_flip(change);
   }
   /// Takes a vertex into another one, along their edge: a free one, or one on a curve along that.
   template <class Allow>
@@ -204,6 +208,10 @@ class EditableMesh {
     Count& operator=(const Count& o) { return value = o.value.load(), *this; }
   };
 
+  /// Of two vertices one with fewer triangles, where each has a list.
+  uint32_t with_fewer(uint32_t u, uint32_t v) const {
+    return around_.empty() || around_[u].size() < around_[v].size() ? u : v;
+  }
   bool list_flip(uint32_t triangle, size_t edge, MeshChange& change) const;
   bool list_collapse(uint32_t gone, uint32_t into, MeshChange& change) const;
   bool list_split(uint32_t u, uint32_t v, MeshChange& change) const;
@@ -211,6 +219,9 @@ class EditableMesh {
   bool may_meet_neighbours(uint32_t gone, uint32_t into, MeshChange& change) const;
   bool has_only_fixed(const RegionTriangle& t) const;
   bool are_free(MeshChange& change) const;
+  bool is_in_plane(const MeshChange& flip) const;
+  bool commit_flip(MeshChange& change);
+  void make(MeshChange& change);
   void replace(uint32_t triangle, const RegionTriangle& by);
 
   std::vector<RegionVertex> vertices_;

@@ -40,9 +40,7 @@ class Crossings {
   using Edge = std::tuple<double, uint32_t, uint32_t>;  ///< squared length, and the ends, the smaller one first
 
   bool meets_any(uint32_t triangle) const {
-    bool meets = false;
-    if (!mesh_.triangles()[triangle].is_gone()) mesh_.for_each_met(triangle, [&](uint32_t) { meets = true; });
-    return meets;
+    return !mesh_.triangles()[triangle].is_gone() && mesh_.meets_any(triangle);
   }
   bool has_meeting_triangle(uint32_t u, uint32_t v) const {
     const std::vector<uint32_t>& around = mesh_.around(u);
