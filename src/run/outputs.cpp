@@ -206,8 +206,9 @@ void check_request(const RunRequest& r) {
 }
 
 void check_outputs(const RunRequest& r) {
-  if (!can_write_vdb() && (r.stop_after != StopAfter::mesh || !r.save_shell.empty() || !r.save_voronoi.empty() ||
-                           !r.level_set.path.empty()))
+  const bool is_stage_file = r.stop_after != StopAfter::mesh && !r.output.path.empty();
+  if (!can_write_vdb() &&
+      (is_stage_file || !r.save_shell.empty() || !r.save_voronoi.empty() || !r.level_set.path.empty()))
     refuse(
         "this build writes no .vdb files: leave out --stop-after, --save-shell, --save-voronoi and --save-level-set, "
         "or "

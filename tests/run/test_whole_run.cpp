@@ -224,6 +224,21 @@ TEST_CASE("whole run: a build without OpenVDB refuses a sizing field before anyt
   CHECK(contains(refusal(request, ErrorCode::unreadable_input), "build with -DISOSHELL_VDB=ON"));
 }
 
+TEST_CASE("whole run: a level set that stays in memory needs no OpenVDB", "[run]") {
+  CpuContext context;
+  RunRequest request = small_run();
+  request.stop_after = StopAfter::level_set;
+  request.level_set.keep = true;
+  const RunResult result = run(input_of(ball(), "ball"), request, context);
+  REQUIRE(result.level_set);
+  CHECK(result.level_set->voxels.voxel_count() > 0);
+  if (can_write_vdb()) return;
+  const TemporaryFolder folder;
+  request.input = named_input("none.ply");
+  request.output = named_output(folder / "out.vdb", "", request.stop_after);
+  CHECK(contains(refusal(request, ErrorCode::unwritable_output), "this build writes no .vdb files"));
+}
+
 TEST_CASE("whole run: one that is cancelled says what was written", "[run]") {
   const TemporaryFolder folder;
   CpuContext context;
