@@ -26,6 +26,7 @@ struct SplitCellsByBlocks;
 }
 namespace optimize {
 struct FlipEdgesInBatches;
+struct MeshPassesInOneLaunch;
 struct SearchPositionsInOneLaunch;
 class StepsByLanes;
 struct UndoHarmInOneLaunch;
@@ -102,6 +103,8 @@ struct CudaKernels {
   using JoinComponents = JoinComponentsByLeaves;
   /// split_cells.cuh: a block of threads a cell; cells are few and large.
   using SplitCells = dual::SplitCellsByBlocks;
+  /// mesh_passes_kernel.cuh: all passes in one cooperative launch.
+  using MeshPasses = optimize::MeshPassesInOneLaunch;
   /// optimize_kernels.cuh: three rounds between two looks of the host; one that finds nothing changes nothing.
   using FlipEdges = optimize::FlipEdgesInBatches;
   /// optimize_kernels.cuh: all rounds in one cooperative launch, none of which the host waits for.

@@ -1,5 +1,6 @@
 // CUDA's optimize_mesh.
 #include "cuda/cuda_backend.h"
+#include "cuda/optimize/mesh_passes_kernel.cuh"
 #include "cuda/optimize/optimize_kernels.cuh"
 #include "cuda/optimize/steps_by_lanes.cuh"
 #include "cuda/relax/label_cooperative.cuh"

@@ -14,6 +14,7 @@ class WalksAhead;
 struct CpuBuildShell;
 struct CpuListSiteTriangles;
 struct CpuListTrianglesAround;
+struct CpuMeshPasses;
 struct CpuSortKeys;
 struct LeafSimd;
 struct ProjectLanes;
@@ -40,6 +41,8 @@ struct CpuKernels {
   /// optimize_simd.h: the triangles around each vertex are listed once, samples are sorted by triangle, sums go in
   /// lanes.
   using StepWork = CpuStepSimd;
+  /// mesh_passes_simd.h: triangles are measured in lanes; the few edges that may flip are listed once.
+  using MeshPasses = CpuMeshPasses;
 
   // Plain: they take little of a run's time, or leave nothing to share between elements.
   using Dilate = PlainKernels::Dilate;

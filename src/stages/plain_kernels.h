@@ -32,6 +32,7 @@ struct PlainSplitCells;
 }
 namespace optimize {
 struct PlainFlipEdges;
+struct PlainMeshPasses;
 struct PlainSearchPositions;
 struct PlainStepWork;
 struct PlainUndoHarm;
@@ -69,6 +70,7 @@ struct PlainKernels {
 
   // optimize_mesh
   using StepWork = optimize::PlainStepWork;                ///< smoothing and fit: optimize_steps.h
+  using MeshPasses = optimize::PlainMeshPasses;            ///< relaxation on the mesh: optimize_mesh_passes.h
   using FlipEdges = optimize::PlainFlipEdges;              ///< in independent sets: optimize_flips.h
   using UndoHarm = optimize::PlainUndoHarm;                ///< of a step, to a fixed point: optimize_guard.h
   using SearchPositions = optimize::PlainSearchPositions;  ///< for poor vertices: optimize_search.h

@@ -200,6 +200,14 @@ void relax_and_mesh_the_sheet(SideBySide& both, int64_t count) {
                                          std::to_string(run.report.self_intersections) + " intersections, seeds " +
                                          digest_text(hash_arrays(run.seeds)));
   });
+  both.stage("mesh relaxed in passes", &Products::dual, [](const Products& p, Context& c) {
+    OptimizeOptions passes;
+    passes.for_seeds = true;
+    passes.mesh_passes = 50;
+    passes.noise_edges = 0.1;
+    OptimizedMesh run = optimize_mesh(p.sheet, seeded_mesh_of(p), passes, c);
+    return made(std::move(run.mesh), "seeds " + digest_text(hash_arrays(run.seeds)));
+  });
   both.stage("mesh with edges collapsed", &Products::dual, [](const Products& p, Context& c) {
     SeededMesh run = collapse_edges(p.sheet, seeded_mesh_of(p), {p.seeds.size() * 4 / 5}, c);
     return made(std::move(run.mesh), "seeds " + digest_text(hash_arrays(run.seeds)));

@@ -245,6 +245,8 @@ struct OptimizeOptions {
   Fit fit = Fit::balanced;
   bool uniform_area = false;  ///< triangles of even size rather than of the best shape
   bool for_seeds = false;     ///< ends with flips and smoothing: the vertices are to be seeds again
+  int32_t mesh_passes = 0;    ///< of Lloyd relaxation on the mesh, before all else; only with for_seeds
+  double noise_edges = 0;     ///< of these passes at first: how far noise moves vertices, in edges
   bool keep_apart = false;    ///< no flip that makes triangles intersect where vertices began, and no relocation
 };
 struct OptimizeReport {
@@ -262,7 +264,8 @@ struct OptimizedMesh : SeededMesh {
 /// closed and 2-manifold, same genus. Fixed vertices stay where they are, with the edges of their borders; they are to
 /// have as many triangles as their angle holds, and copies count as one vertex where intersections are looked for.
 /// A closed component of at most 32 triangles bounds a volume of the same sign as the surface's component that it is
-/// on. Throws: usage when surface or mesh have a border without fixed seeds.
+/// on. Passes on the mesh move vertices whatever the smoothing steps, and their flips are not counted. Throws: usage
+/// when surface or mesh have a border without fixed seeds, and for passes on a mesh whose vertices are not for seeds.
 OptimizedMesh optimize_mesh(const SurfaceMesh& surface, SeededMesh&& mesh, const OptimizeOptions& options,
                             Context& context);
 

@@ -2,6 +2,7 @@
 #include "core/copy_product.h"
 #include "cpu/cpu_backend.h"
 #include "cpu/executor_tbb.h"
+#include "cpu/optimize/mesh_passes_simd.h"
 #include "cpu/optimize/optimize_simd.h"
 #include "cpu/relax/label_simd.h"
 #include "cpu/relax/walk_ahead.h"

@@ -12,6 +12,7 @@
 #include "stages/optimize/optimize_fit.h"
 #include "stages/optimize/optimize_flips.h"
 #include "stages/optimize/optimize_guard.h"
+#include "stages/optimize/optimize_mesh_passes.h"
 #include "stages/optimize/optimize_orientation.h"
 #include "stages/optimize/optimize_relocate.h"
 #include "stages/optimize/optimize_search.h"
@@ -89,6 +90,26 @@ class Optimization {
       std::swap(seeds_.home, moved_home_);
       exec_.copy(View<const PointQ8>(mesh_.position.view()), on_sheet_.view());
     }
+  }
+
+  /// Lloyd relaxation on the mesh; its vertices are on the sheet then.
+  void relax_on_mesh(const MeshPassOptions& options) {
+    Buffer<CellPart> part = exec_.template make<CellPart>(half_edges_);
+    Buffer<double> cotangent = exec_.template make<double>(half_edges_);
+    Buffer<Vector> normal = exec_.template make<Vector>(half_edges_ / 3);
+    Kernels::MeshPasses::run(exec_, MeshPasses{view(),
+                                               walk_,
+                                               fixed(),
+                                               size_,
+                                               options,
+                                               {mesh_.position.view(), moved_.view(), previous_.view()},
+                                               seeds_.home.view(),
+                                               claim_.view(),
+                                               part.view(),
+                                               cotangent.view(),
+                                               normal.view()});
+    if (options.passes % 3 == 1) std::swap(mesh_.position, moved_);
+    if (options.passes % 3 == 2) std::swap(mesh_.position, previous_);
   }
 
   /// Attaches samples of the sheet, and what it misses, to the triangles around the vertices that they are nearest to.

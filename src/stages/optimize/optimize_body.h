@@ -66,6 +66,7 @@ OptimizeReport optimize_mesh_body(Exec& exec, const SurfaceMesh& surface, const 
   // Triangles at fixed vertices may stay poor: a free search would take their other corners far off the surface.
   const double free_hold = seeds.fixed.count > 0 ? kHold : 0;
   const bool flips_only = options.smoothing_steps == 0;
+  if (options.mesh_passes > 0) work.relax_on_mesh({options.mesh_passes, options.noise_edges});
   report.flips = work.flip(options.flip_rounds, kPoorQuality);
   if (!flips_only) {
     work.smooth(options.smoothing_steps, kSmoothingMomentum, kHold, kPoorQuality);
