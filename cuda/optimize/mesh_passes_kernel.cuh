@@ -35,8 +35,8 @@ __device__ inline void flip_in_pass(const MeshPasses& passes, int32_t pass) {
     if (!winner(half_edge_of(turn))) flips &= ~(1u << turn);
   }
   grid.sync();
-  const FlipWinner flip{passes, pass, {}};
-  for (; flips != 0; flips &= flips - 1) flip.flip(uint32_t(half_edge_of(__ffs(int(flips)) - 1)));
+  const FlipInPass flip{passes, pass};
+  for (; flips != 0; flips &= flips - 1) flip(uint32_t(half_edge_of(__ffs(int(flips)) - 1)));
 }
 
 /// The whole of PlainMeshPasses.

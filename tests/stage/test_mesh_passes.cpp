@@ -6,15 +6,13 @@
 
 #include "cpu/executor_tbb.h"
 #include "isoshell/advanced/stages.h"
-#include "isoshell/mesh_topology.h"
-#include "isoshell/quality.h"
 #include "stages/optimize/optimize_body.h"
 #include "support/catch.h"
 #include "support/open_meshes.h"
 #include "support/refusals.h"
+#include "support/relax_sheets.h"
 #include "support/shapes.h"
 #include "support/solid_soup.h"
-#include "support/soup_sheet.h"
 #include "support/test_context.h"
 
 using namespace isoshell;
@@ -22,29 +20,11 @@ using optimize::Vector;
 
 namespace {
 
-struct Start {
-  std::string name;
-  Sheet sheet;
-  SeedSet seeds;
-  DualMesh mesh;
-};
-
-Start start_of(const char* name, const TriangleSoup& soup, int32_t resolution, int64_t count) {
-  TestContext context;
-  const MeshTopology t = check_mesh({soup.vertices, soup.triangles});
-  Start s{name, sheet_of_soup(soup, resolution, t.components, t.genus), {}, {}};
-  s.seeds = place_seeds(s.sheet, {count, 3}, context);
-  relax_on_sheet(s.sheet, s.seeds, {8}, context);
-  DualReport report;
-  s.mesh = triangulate_dual(s.sheet, s.seeds, {}, report, context);
-  REQUIRE(report.failed_cells == 0);
-  return s;
-}
-std::vector<Start> starts() {
-  std::vector<Start> out;
-  out.push_back(start_of("torus", shapes::torus(2, 0.7, 160, 70), 256, 400));
-  out.push_back(start_of("sphere", shapes::sphere({0, 0, 0}, 1, 60), 320, 300));
-  out.push_back(start_of("frame of a cube, genus 5", shapes::cube_frame(12, 2), 24, 150));
+std::vector<DualStart> starts() {
+  std::vector<DualStart> out;
+  out.push_back(dual_start("torus", shapes::torus(2, 0.7, 160, 70), 256, 400, 8));
+  out.push_back(dual_start("sphere", shapes::sphere({0, 0, 0}, 1, 60), 320, 300, 8));
+  out.push_back(dual_start("frame of a cube, genus 5", shapes::cube_frame(12, 2), 24, 150, 8));
   return out;
 }
 
@@ -58,25 +38,10 @@ OptimizeOptions passes_only(int32_t passes, double noise_edges) {
   return options;
 }
 
-/// Lengths that grow fourfold along an axis.
-void vary_lengths(Sheet& sheet) {
-  constexpr uint32_t kLeast = 1000;
-  int32_t first = INT32_MAX, last = INT32_MIN;
-  for (const PointQ8& p : sheet.position) first = std::min(first, p.x), last = std::max(last, p.x);
-  sheet.lengths = {Buffer<uint32_t>(sheet.vertex_count()), kLeast, 4 * kLeast};
-  for (int64_t v = 0; v < sheet.vertex_count(); ++v)
-    sheet.lengths.at[v] = kLeast + uint32_t(3.0 * kLeast * (sheet.position[v].x - first) / (last - first));
-}
-
 int64_t irregular(const DualMesh& mesh) {
   std::vector<int> valence(size_t(mesh.position.size()));
   for (const TriangleIndices& t : mesh.triangles) ++valence[t.a], ++valence[t.b], ++valence[t.c];
   return std::count_if(valence.begin(), valence.end(), [](int n) { return n != 6; });
-}
-
-bool same(const DualMesh& a, const DualMesh& b) {
-  return std::equal(a.position.begin(), a.position.end(), b.position.begin(), b.position.end()) &&
-         std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end());
 }
 
 double distance(Vector a, Vector b) { return std::sqrt(optimize::dot(a - b, a - b)); }
@@ -119,21 +84,21 @@ TEST_CASE("mesh passes: parts of a triangle add up to it, and those of an acute 
 
 TEST_CASE("mesh passes: the CPU's own way, its threads and the definition give the same, also where lengths vary",
           "[mesh_passes][optimize]") {
-  for (Start& s : starts())
+  for (DualStart& s : starts())
     for (const bool vary : {false, true}) {
-      if (vary) vary_lengths(s.sheet);
+      if (vary) s.sheet = with_lengths(std::move(s.sheet), 4);
       INFO(s.name << (vary ? ", lengths vary" : ""));
       TestContext context;
       const OptimizeOptions options = passes_only(50, 0.1);
       SeedSet seeds_by_definition = to_host(s.seeds);
-      DualMesh by_definition{s.mesh.position.to_host(), s.mesh.triangles.to_host()};
+      DualMesh by_definition = copy_of(s.mesh);
       PlainExecutor exec(context, "test");
       optimize_mesh_body(exec, s.sheet, options, seeds_by_definition, by_definition);
       CHECK_FALSE(same(by_definition, s.mesh));
       for (const int threads : {1, 2}) {
         context.threads = threads;
         SeedSet seeds = to_host(s.seeds);
-        DualMesh mesh{s.mesh.position.to_host(), s.mesh.triangles.to_host()};
+        DualMesh mesh = copy_of(s.mesh);
         optimize_mesh(s.sheet, options, seeds, mesh, context);
         CHECK(same(mesh, by_definition));
       }
@@ -143,7 +108,7 @@ TEST_CASE("mesh passes: the CPU's own way, its threads and the definition give t
 TEST_CASE("mesh passes: edges become Delaunay, vertices stay on the sheet, and the topology stays",
           "[mesh_passes][optimize]") {
   TestContext context;
-  for (Start& s : starts()) {
+  for (DualStart& s : starts()) {
     INFO(s.name);
     const MeshTopology before = check_mesh(s.mesh.triangles.view(), s.mesh.position.size());
     optimize_mesh(s.sheet, passes_only(200, 0), s.seeds, s.mesh, context);
@@ -174,11 +139,11 @@ TEST_CASE("mesh passes: edges become Delaunay, vertices stay on the sheet, and t
 
 TEST_CASE("mesh passes: with noise that fades more irregular vertices cancel out", "[mesh_passes][optimize]") {
   TestContext context;
-  Start s = start_of("sphere", shapes::sphere({0, 0, 0}, 1, 60), 320, 600);
+  DualStart s = dual_start("sphere", shapes::sphere({0, 0, 0}, 1, 60), 320, 600, 8);
   int64_t without = 0, with = 0;
   for (const double noise : {0.0, 0.1}) {
     SeedSet seeds = to_host(s.seeds);
-    DualMesh mesh{s.mesh.position.to_host(), s.mesh.triangles.to_host()};
+    DualMesh mesh = copy_of(s.mesh);
     optimize_mesh(s.sheet, passes_only(1000, noise), seeds, mesh, context);
     (noise > 0 ? with : without) = irregular(mesh);
   }
@@ -207,7 +172,7 @@ TEST_CASE("mesh passes: fixed vertices stay where they are, with the edges of th
 
 TEST_CASE("mesh passes: only vertices that are to be seeds may be relaxed so", "[mesh_passes][optimize]") {
   TestContext context;
-  Start s = start_of("sphere", shapes::sphere({0, 0, 0}, 1, 60), 320, 100);
+  DualStart s = dual_start("sphere", shapes::sphere({0, 0, 0}, 1, 60), 320, 100, 8);
   OptimizeOptions options;
   options.mesh_passes = 10;
   CHECK(contains(message_of(ErrorCode::usage, [&] { optimize_mesh(s.sheet, options, s.seeds, s.mesh, context); }),

@@ -10,44 +10,20 @@
 #include "stages/optimize/optimize_body.h"
 #include "stages/optimize/optimize_chords.h"
 #include "support/catch.h"
+#include "support/relax_sheets.h"
 #include "support/shapes.h"
 #include "support/solid_soup.h"
-#include "support/soup_sheet.h"
 #include "support/test_context.h"
 
 using namespace isoshell;
 
 namespace {
 
-struct Start {
-  std::string name;
-  Sheet sheet;
-  SeedSet seeds;
-  DualMesh mesh;
-};
-
-template <class T>
-Buffer<T> copy_of(const Buffer<T>& from) {
-  return from.to_host();
-}
-SeedSet copy_of(const SeedSet& seeds) {
-  return {copy_of(seeds.position), copy_of(seeds.normal), copy_of(seeds.home), {}};
-}
-DualMesh copy_of(const DualMesh& mesh) { return {copy_of(mesh.position), copy_of(mesh.triangles)}; }
-
 /// Duals of seeds that were relaxed a little, or not at all.
-std::vector<Start> starts() {
-  std::vector<Start> out;
+std::vector<DualStart> starts() {
+  std::vector<DualStart> out;
   const auto add = [&](const char* name, const TriangleSoup& soup, int32_t resolution, int64_t count, int32_t passes) {
-    TestContext context;
-    const MeshTopology t = check_mesh({soup.vertices, soup.triangles});
-    Start s{name, sheet_of_soup(soup, resolution, t.components, t.genus), {}, {}};
-    s.seeds = place_seeds(s.sheet, {count, 3}, context);
-    if (passes > 0) relax_on_sheet(s.sheet, s.seeds, {passes}, context);
-    DualReport report;
-    s.mesh = triangulate_dual(s.sheet, s.seeds, {}, report, context);
-    REQUIRE(report.failed_cells == 0);
-    out.push_back(std::move(s));
+    out.push_back(dual_start(name, soup, resolution, count, passes));
   };
   add("torus", shapes::torus(2, 0.7, 160, 70), 256, 400, 20);
   add("torus, not relaxed", shapes::torus(2, 0.7, 160, 70), 256, 400, 0);
@@ -79,16 +55,11 @@ double distance_q8(const Sheet& sheet, const DualMesh& mesh) {
   return std::sqrt(sum / double(sheet.vertex_count()));
 }
 
-bool same(const DualMesh& a, const DualMesh& b) {
-  return std::equal(a.position.begin(), a.position.end(), b.position.begin(), b.position.end()) &&
-         std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end());
-}
-
 }  // namespace
 
 TEST_CASE("optimize: the mesh stays closed, of its topology and in canonical order", "[optimize][stage]") {
   TestContext context;
-  for (Start& s : starts()) {
+  for (DualStart& s : starts()) {
     const MeshTopology before = check_mesh(s.mesh.triangles.view(), s.mesh.position.size());
     optimize_mesh(s.sheet, {}, s.seeds, s.mesh, context);
     const MeshTopology after = check_mesh(s.mesh.triangles.view(), s.mesh.position.size());
@@ -108,13 +79,13 @@ TEST_CASE("optimize: the mesh stays closed, of its topology and in canonical ord
 }
 
 TEST_CASE("optimize: the CPU's own ways of steps give what their definitions give", "[optimize][stage]") {
-  for (const Start& s : starts())
+  for (const DualStart& s : starts())
     for (const bool uniform_area : {false, true}) {
       INFO(s.name << (uniform_area ? ", uniform areas" : ""));
       TestContext context;
       OptimizeOptions options;
       options.uniform_area = uniform_area;
-      SeedSet seeds = copy_of(s.seeds), seeds_by_definition = copy_of(s.seeds);
+      SeedSet seeds = to_host(s.seeds), seeds_by_definition = to_host(s.seeds);
       DualMesh mesh = copy_of(s.mesh), mesh_by_definition = copy_of(s.mesh);
       optimize_mesh(s.sheet, options, seeds, mesh, context);
       PlainExecutor exec(context, "test");
@@ -125,7 +96,7 @@ TEST_CASE("optimize: the CPU's own ways of steps give what their definitions giv
 
 TEST_CASE("optimize: triangles get better on average, and the worst one no worse", "[optimize][stage]") {
   TestContext context;
-  for (Start& s : starts()) {
+  for (DualStart& s : starts()) {
     const double least = least_quality(s.mesh);
     const MeshQuality before = measure_quality(to_world(s.mesh, s.sheet.frame));
     optimize_mesh(s.sheet, {}, s.seeds, s.mesh, context);
@@ -139,7 +110,7 @@ TEST_CASE("optimize: triangles get better on average, and the worst one no worse
 
 TEST_CASE("optimize: smooth shapes get no angle below 38 degrees", "[optimize][stage]") {
   TestContext context;
-  for (Start& s : starts()) {
+  for (DualStart& s : starts()) {
     if (s.name != "torus" && s.name != "sphere") continue;
     optimize_mesh(s.sheet, {}, s.seeds, s.mesh, context);
     INFO(s.name);
@@ -151,7 +122,7 @@ TEST_CASE("optimize: vertices that are to be seeds again end on the sheet, in be
   TestContext context;
   OptimizeOptions options;
   options.for_seeds = true;
-  for (Start& s : starts()) {
+  for (DualStart& s : starts()) {
     const double before = measure_quality(to_world(s.mesh, s.sheet.frame)).q_avg;
     optimize_mesh(s.sheet, options, s.seeds, s.mesh, context);
     INFO(s.name);
@@ -169,8 +140,8 @@ TEST_CASE("optimize: vertices that are to be seeds again end on the sheet, in be
 
 TEST_CASE("optimize: flips alone move nothing and make valences more even", "[optimize][stage]") {
   TestContext context;
-  for (Start& s : starts()) {
-    SeedSet seeds = copy_of(s.seeds);
+  for (DualStart& s : starts()) {
+    SeedSet seeds = to_host(s.seeds);
     DualMesh mesh = copy_of(s.mesh);
     const int64_t flips = optimize_mesh(s.sheet, {6, 0, 0}, seeds, mesh, context).flips;
     const auto unevenness = [](const DualMesh& m) {
@@ -187,12 +158,12 @@ TEST_CASE("optimize: flips alone move nothing and make valences more even", "[op
 }
 
 TEST_CASE("optimize: one thread and two give the same bytes", "[optimize][stage]") {
-  for (Start& s : starts()) {
+  for (DualStart& s : starts()) {
     DualMesh first;
     for (const int threads : {1, 2}) {
       TestContext context;
       context.threads = threads;
-      SeedSet seeds = copy_of(s.seeds);
+      SeedSet seeds = to_host(s.seeds);
       DualMesh mesh = copy_of(s.mesh);
       optimize_mesh(s.sheet, {}, seeds, mesh, context);
       INFO(s.name);
@@ -207,7 +178,7 @@ TEST_CASE("optimize: one thread and two give the same bytes", "[optimize][stage]
 TEST_CASE("optimize: a balanced fit is nearer to the surface than vertices on it, which surface gives",
           "[optimize][stage]") {
   TestContext context;
-  for (Start& s : starts()) {
+  for (DualStart& s : starts()) {
     if (s.name == "torus, not relaxed") continue;
     if (s.name == "frame of a cube, too few seeds") continue;  // triangles intersect, and go back to where they began
     INFO(s.name);
@@ -215,7 +186,7 @@ TEST_CASE("optimize: a balanced fit is nearer to the surface than vertices on it
     double distance[2];
     for (const Fit fit : {Fit::balanced, Fit::surface}) {
       options.fit = fit;
-      SeedSet seeds = copy_of(s.seeds);
+      SeedSet seeds = to_host(s.seeds);
       DualMesh mesh = copy_of(s.mesh);
       optimize_mesh(s.sheet, options, seeds, mesh, context);
       distance[int(fit)] = distance_q8(s.sheet, mesh);
@@ -250,7 +221,7 @@ TEST_CASE("optimize: points that the sheet misses draw the mesh towards them", "
   REQUIRE(report.failed_cells == 0);
   REQUIRE(!sheet.missed.empty());
   const auto distance_of_pit = [&] {
-    SeedSet s = copy_of(seeds);
+    SeedSet s = to_host(seeds);
     DualMesh mesh = copy_of(start);
     optimize_mesh(sheet, {}, s, mesh, context);
     const PointQ8 bottom = frame.snap(pit);
@@ -323,7 +294,7 @@ TEST_CASE("optimize: an edge far from the surface is flipped where that brings i
 
 TEST_CASE("optimize: a mesh without triangles stays one", "[optimize][stage]") {
   TestContext context;
-  Start s = std::move(starts().front());
+  DualStart s = std::move(starts().front());
   SeedSet none;
   DualMesh empty;
   const OptimizeReport report = optimize_mesh(s.sheet, {}, none, empty, context);
@@ -354,13 +325,13 @@ TEST_CASE("optimize: moves are held to the planes of triangles, at creases and t
 
 TEST_CASE("optimize: areas are more even when that is asked for", "[optimize][stage]") {
   TestContext context;
-  for (Start& s : starts()) {
+  for (DualStart& s : starts()) {
     if (s.name != "torus" && s.name != "sphere" && s.name != "two bodies") continue;
     double cv[2];
     for (const bool uniform : {false, true}) {
       OptimizeOptions options;
       options.uniform_area = uniform;
-      SeedSet seeds = copy_of(s.seeds);
+      SeedSet seeds = to_host(s.seeds);
       DualMesh mesh = copy_of(s.mesh);
       optimize_mesh(s.sheet, options, seeds, mesh, context);
       cv[int(uniform)] = measure_quality(to_world(mesh, s.sheet.frame)).area_cv;

@@ -2,11 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
+#include "isoshell/advanced/stages.h"
+#include "isoshell/mesh_topology.h"
 #include "stages/labels/label_body.h"
+#include "support/catch.h"
 #include "support/shapes.h"
 #include "support/soup_sheet.h"
+#include "support/test_context.h"
 
 namespace isoshell {
 
@@ -70,6 +75,34 @@ inline std::vector<uint32_t> brute_force_labels(const SurfaceMesh& surface, cons
     labels.push_back(id);
   }
   return labels;
+}
+
+/// What the optimisation begins with: a sheet, seeds that were relaxed on it, and their dual.
+struct DualStart {
+  std::string name;
+  Sheet sheet;
+  SeedSet seeds;
+  DualMesh mesh;
+};
+
+inline DualStart dual_start(const char* name, const TriangleSoup& soup, int32_t resolution, int64_t count,
+                            int32_t passes) {
+  TestContext context;
+  const MeshTopology t = check_mesh({soup.vertices, soup.triangles});
+  DualStart s{name, sheet_of_soup(soup, resolution, t.components, t.genus), {}, {}};
+  s.seeds = place_seeds(s.sheet, {count, 3}, context);
+  if (passes > 0) relax_on_sheet(s.sheet, s.seeds, {passes}, context);
+  DualReport report;
+  s.mesh = triangulate_dual(s.sheet, s.seeds, {}, report, context);
+  REQUIRE(report.failed_cells == 0);
+  return s;
+}
+
+inline DualMesh copy_of(const DualMesh& mesh) { return {mesh.position.to_host(), mesh.triangles.to_host()}; }
+
+inline bool same(const DualMesh& a, const DualMesh& b) {
+  return std::equal(a.position.begin(), a.position.end(), b.position.begin(), b.position.end()) &&
+         std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end());
 }
 
 }  // namespace isoshell

@@ -264,7 +264,8 @@ struct OptimizedMesh : SeededMesh {
 /// closed and 2-manifold, same genus. Fixed vertices stay where they are, with the edges of their borders; they are to
 /// have as many triangles as their angle holds, and copies count as one vertex where intersections are looked for.
 /// A closed component of at most 32 triangles bounds a volume of the same sign as the surface's component that it is
-/// on. Passes on the mesh move vertices whatever the smoothing steps, and their flips are not counted. Throws: usage
+/// on. Passes on the mesh move vertices whatever the smoothing steps, and their flips are not counted; one costs
+/// O(vertices), and they hold 300 bytes a vertex meanwhile. Throws: usage
 /// when surface or mesh have a border without fixed seeds, and for passes on a mesh whose vertices are not for seeds.
 OptimizedMesh optimize_mesh(const SurfaceMesh& surface, SeededMesh&& mesh, const OptimizeOptions& options,
                             Context& context);

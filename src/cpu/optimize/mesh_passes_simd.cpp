@@ -75,9 +75,9 @@ struct ListedWins {
   bool operator()(int64_t i) const { return winner(listed[i]); }
 };
 struct FlipListed {
-  FlipWinner flip;
+  FlipInPass flip;
   View<const uint32_t> listed, winners;
-  void operator()(int64_t i) const { flip.flip(listed[winners[i]]); }
+  void operator()(int64_t i) const { flip(listed[winners[i]]); }
 };
 
 void flip_edges(CpuExecutor& exec, const MeshPasses& passes, int32_t pass) {
@@ -86,7 +86,7 @@ void flip_edges(CpuExecutor& exec, const MeshPasses& passes, int32_t pass) {
   if (listed.empty()) return;
   exec.for_each("claim flips", listed.size(), ClaimListed{{key, passes.claim}, listed.view()});
   const Buffer<uint32_t> winners = exec.select(listed.size(), ListedWins{{key, passes.claim}, listed.view()});
-  exec.for_each("flip edges", winners.size(), FlipListed{{passes, pass, {}}, listed.view(), winners.view()});
+  exec.for_each("flip edges", winners.size(), FlipListed{{passes, pass}, listed.view(), winners.view()});
 }
 
 }  // namespace

@@ -196,7 +196,8 @@ void EditableMesh::add(const RegionTriangle& t) {
 void EditableMesh::remove(uint32_t triangle) { replace(triangle, kGone); }
 
 /// Whether a flip's four corners are the corners of a convex part of a plane on the lattice. What it makes covers what
-/// was there, so it meets what that met.
+/// was there, so it meets what that met: no third triangle has the edge that goes, as it is on no curve, and none the
+/// edge that comes, which flip() asks.
 bool EditableMesh::is_in_plane(const MeshChange& flip) const {
   const auto on_lattice = [&](size_t corner) { return rounded_down(at(flip.made[0].corner[corner])); };
   const PointQ8 a = on_lattice(0), d = on_lattice(1), c = on_lattice(2), b = rounded_down(at(flip.made[1].corner[0]));

@@ -68,7 +68,7 @@ double smallest_sine(const WorldPoint& a, const WorldPoint& b, const WorldPoint&
 /// mesh as it was. Vertices and triangles keep their numbers; those that are gone have no triangles, and one corner
 /// twice. Several threads may make changes at once, each with its own MeshChange, but for splits, where the triangles
 /// around their vertices, before and after, lie in boxes that do not meet. Cost of each: the triangles around its
-/// vertices, and a look at those whose boxes meet them.
+/// vertices, and, but for flips within a plane, a look at those whose boxes meet them.
 class EditableMesh {
  public:
   /// Of few triangles, all are looked at where those of a vertex are asked for, and copies are cheap; of many, each

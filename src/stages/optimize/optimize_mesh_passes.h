@@ -181,19 +181,22 @@ struct MarkWinner {
   View<uint32_t> wins;
   ISOSHELL_HD void operator()(int64_t h) const { wins[h] = winner(h) ? 1u : 0u; }
 };
-/// Flips it, and measures its triangles anew.
-struct FlipWinner {
+/// Flips an edge, and measures its triangles anew.
+struct FlipInPass {
   MeshPasses passes;
   int32_t pass;
-  View<const uint32_t> wins;  ///< by half-edge; not asked by `flip`
-  ISOSHELL_HD void operator()(int64_t h) const {
-    if (wins[h]) flip(uint32_t(h));
-  }
-  ISOSHELL_HD void flip(uint32_t h) const {
+  ISOSHELL_HD void operator()(uint32_t h) const {
     const uint32_t other = passes.mesh.twin[h] / 3;
     flip_edge(passes.mesh, h);
     passes.measure(h / 3, passes.from(pass));
     passes.measure(other, passes.from(pass));
+  }
+};
+struct FlipMarked {
+  FlipInPass flip;
+  View<const uint32_t> wins;
+  ISOSHELL_HD void operator()(int64_t h) const {
+    if (wins[h]) flip(uint32_t(h));
   }
 };
 
@@ -264,7 +267,7 @@ struct PlainMeshPasses {
         const DelaunayKey key = delaunay_key(passes, pass);
         exec.for_each("claim flips", half_edges, ClaimVertices{key, passes.claim});
         exec.for_each("mark flips", half_edges, MarkWinner{{key, passes.claim}, wins.view()});
-        exec.for_each("flip edges", half_edges, FlipWinner{passes, pass, wins.view()});
+        exec.for_each("flip edges", half_edges, FlipMarked{{passes, pass}, wins.view()});
       }
       exec.for_each("move in ring", vertices, MoveInRing{passes, pass, passes.noise_q8(pass)});
       if (passes.returns(pass))
