@@ -4,6 +4,8 @@
 #include <set>
 #include <vector>
 
+#include "features/curves/crease_gaps.h"
+#include "features/curves/creases.h"
 #include "features/curves/face_normals.h"
 #include "features/known_curves.h"
 #include "geometry/half_edges.h"
@@ -193,4 +195,52 @@ TEST_CASE("curves: edges said to be smooth are no creases, borders stay what the
   const CurveNetwork borders = find_curves(flat, of_flat);
   for (const FeatureCurve& curve : borders.curves) of_flat.smooth.push_back({curve.vertex[0], curve.vertex[1]});
   CHECK(find_curves(flat, of_flat).curves.size() == borders.curves.size());
+}
+
+TEST_CASE("curves: a crease that is interrupted for less than an edge goes on, by its own edges", "[curves][unit]") {
+  const FeatureMesh mesh = weld_for_features(cube(8));
+  const MeshEdges edges = find_mesh_edges(mesh);
+  const std::vector<CurveEdge> all = with_creases_above(mesh, edges, find_fixed_curve_edges(edges), 45);
+  REQUIRE(all.size() == 12 * 8);
+  Buffer<double> turns(edges.count());
+  for (uint32_t e = 0; e < edges.count(); ++e) turns[e] = 0;
+  for (const CurveEdge& c : all) turns[c.edge] = c.turn;
+  const auto on_line = [&](uint32_t e, double from, double to) {  // along x, where y and z are 0
+    const WorldPoint &a = mesh.vertices[edges.edges[e].end[0]], &b = mesh.vertices[edges.edges[e].end[1]];
+    const auto is_on = [](const WorldPoint& p) { return p.y == 0 && p.z == 0; };
+    return is_on(a) && is_on(b) && std::min(a.x, b.x) >= from && std::max(a.x, b.x) <= to;
+  };
+  const auto across = [&](double from, double to, double reach) {
+    std::vector<uint32_t> gone;
+    std::vector<CurveEdge> left;
+    for (const CurveEdge& c : all)
+      if (on_line(c.edge, from, to))
+        gone.push_back(c.edge);
+      else
+        left.push_back(c);
+    const std::vector<uint32_t> found = edges_across_gaps(mesh, edges, turns.view(), left, reach);
+    return std::pair(found == gone, found.empty());
+  };
+  CHECK(across(.25, .5, .3).first);           // between two ends
+  CHECK(across(.75, 1, .3).first);            // up to a corner
+  CHECK(across(.25, .625, .3).second);        // too wide
+  CHECK(across(0, 1, 2).second);              // nothing ends freely
+  std::fill(turns.begin(), turns.end(), 0.);  // flat edges count twice
+  CHECK(across(.25, .5, .3).second);
+  CHECK(across(.25, .5, .6).first);
+}
+
+TEST_CASE("curves: creases that end beside each other, and do not lead there, stay as they are", "[curves][unit]") {
+  const FeatureMesh mesh = weld_for_features(cube(8));
+  const MeshEdges edges = find_mesh_edges(mesh);
+  std::vector<CurveEdge> two;  // half of the edges along x at y = 0 and y = 1, where z is 0: side by side, far apart
+  for (uint32_t e = 0; e < edges.count(); ++e) {
+    const WorldPoint &a = mesh.vertices[edges.edges[e].end[0]], &b = mesh.vertices[edges.edges[e].end[1]];
+    if (a.z == 0 && b.z == 0 && a.y == b.y && (a.y == .25 || a.y == .5) && std::max(a.x, b.x) <= .5)
+      two.push_back({e, CurveKind::crease, 1});
+  }
+  REQUIRE(two.size() == 8);
+  Buffer<double> turns(edges.count());
+  for (uint32_t e = 0; e < edges.count(); ++e) turns[e] = 1;
+  CHECK(edges_across_gaps(mesh, edges, turns.view(), two, .45).empty());
 }

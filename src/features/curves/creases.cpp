@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/parallel_ranges.h"
+#include "features/curves/crease_gaps.h"
 #include "features/curves/creases_before.h"
 #include "features/curves/face_normals.h"
 #include "features/curves/facet_edges.h"
@@ -283,6 +284,10 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
       kept.insert(kept.end(), chains[c].edge.begin(), chains[c].edge.end());
   std::sort(kept.begin(), kept.end());
   if (!kept.empty()) {
+    const std::vector<uint32_t> across =
+        edges_across_gaps(mesh, edges, turns, with_creases(fixed, kept, turns), edge_length_world);
+    kept.insert(kept.end(), across.begin(), across.end());
+    std::sort(kept.begin(), kept.end());
     const std::vector<uint32_t> facets =
         find_facet_edges(mesh, edges, normals, with_creases(fixed, kept, turns), edge_length_world);
     kept.insert(kept.end(), facets.begin(), facets.end());
