@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "features/curves/face_normals.h"
 #include "features/curves/find_curves.h"
 #include "features/mesh/weld_for_features.h"
 #include "geometry/world_vector.h"
@@ -196,6 +197,34 @@ TEST_CASE("creases of fields: hollow creases that a level set's maker filled are
       }
       CHECK(nearest < 1);
     }
+  }
+}
+
+TEST_CASE("creases of fields: around steps of one or two voxels no triangle higher than 1/32 is folded onto another", "[volume][unit]") {
+  for (const double step : {1.2, 1.6, 1.9}) {
+    const Turn turn = turned_by(.21, .13);
+    const auto bored = [&](const WorldPoint& p) {  // a plate with a hole that is wider in its upper half
+      const WorldPoint q = turn(p);
+      const double off = std::hypot(q.x, q.y), wide = std::hypot(std::max(0., 6 + step - off), std::max(0., -q.z)),
+                   narrow = std::max(0., 6 - off);
+      const double in_wide = std::max(6 + step - off >= 0 && -q.z <= 0 ? -std::min(6 + step - off, q.z) : wide, -1e9),
+                   in_narrow = narrow > 0 ? -narrow : off - 6;
+      return std::max(box_distance(q, {14, 14, 7}), -std::min(in_wide, in_narrow));
+    };
+    const TriangleSoup soup = extract_iso_surface(level_set(32, bored), 0, 0, VolumeCreases::all);
+    CHECK(is_closed_2_manifold_by_edges(soup));
+    const FeatureMesh mesh = weld_for_features(soup);
+    const MeshEdges edges = find_mesh_edges(mesh);
+    const Buffer<WorldPoint> normals = face_normals(mesh, edges);
+    const auto is_high = [&](uint32_t face) {
+      const auto& [a, b, c] = mesh.triangles[face];
+      return triangle_height(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) > 1. / 32;
+    };
+    int folds = 0;
+    for (const FeatureEdge& e : edges.edges)
+      folds += is_high(e.face[0]) && is_high(e.face[1]) &&
+               turn_between(normals[e.face[0]], normals[e.face[1]]) > turn_of_degrees(165);
+    CHECK(folds == 0);
   }
 }
 

@@ -17,7 +17,7 @@ constexpr double kLeastEigenvalue = 0.02;  // of the largest: two sides that tur
 constexpr double kMostOutside = 1;         // voxels from the cell
 constexpr double kFarthestSlide = 1;       // voxels
 constexpr double kLeastUpright = 0.1;      // cosine between a triangle and the sides of its crossings
-constexpr double kNarrow = 0.1;            // voxels: triangles this low may lean, which no one sees
+constexpr double kNarrow = 0.03;           // voxels: triangles this low may lean, which no one sees
 constexpr int kEvenRounds = 4;
 constexpr uint32_t kShortest = 8;  // vertices that follow each other
 
