@@ -24,7 +24,7 @@ class Options(TypedDict, total=False):
 
     Grid:
         resolution: voxels along the longest side, 8 to 8192 [cells are 4.5 to 5.5 voxels wide].
-        voxel_size: voxel size in world units, instead of resolution.
+        voxel_size: voxel size in world units, instead of resolution; voxels have their centres at multiples of it.
         band: thickness of the shell in voxels, 1 to 20 [2].
         close_gaps: maximum width of the gaps to bridge: W in world units, voxels as 4vox, 0, or auto [auto].
         outer_only: drop what lies inside of closed surfaces (default: keep hollows).

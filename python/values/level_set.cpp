@@ -44,9 +44,10 @@ Array owning(std::unique_ptr<std::vector<T>> values, std::initializer_list<size_
 Coordinates coordinates(const MadeLevelSet& made) {
   const size_t count = size_t(made.set->voxels.voxel_count());
   auto rows = std::make_unique<std::vector<int32_t>>(3 * count);
+  const Voxel first = made.set->frame.index_space().first;
   for_each_voxel(made.set->voxels, [&](Voxel v, int64_t i) {
     int32_t* const row = rows->data() + 3 * i;
-    row[0] = v.x, row[1] = v.y, row[2] = v.z;
+    row[0] = first.x + v.x, row[1] = first.y + v.y, row[2] = first.z + v.z;
   });
   return owning<Coordinates>(std::move(rows), {count, 3});
 }
@@ -108,11 +109,10 @@ DenseArray dense(const MadeLevelSet& made, int64_t max_bytes) {
   return owning<DenseArray>(std::move(values), {size_t(size[0]), size_t(size[1]), size_t(size[2])});
 }
 
-/// The centre of voxel (0, 0, 0), in world units.
+/// Where coordinates (0, 0, 0) are, in world units.
 std::array<double, 3> origin_of(const LevelSet& set) {
-  const double half = set.frame.voxel_size / 2;
-  const WorldPoint& corner = set.frame.origin;
-  return {corner.x + half, corner.y + half, corner.z + half};
+  const WorldPoint zero = set.frame.index_space().zero_world;
+  return {zero.x, zero.y, zero.z};
 }
 
 void save(const MadeLevelSet& made, const std::string& path, const std::string& grid, bool half, bool overwrite) {

@@ -131,7 +131,7 @@ std::vector<OptionRow> grid_rows() {
        &RemeshOptions::resolution,
        OnResume::of_shell,
        {8, kMaxResolution}},
-      {group, "voxel-size", "S", "voxel size in world units, instead of --resolution", "", "voxel_size_world",
+      {group, "voxel-size", "S", "voxel size in world units, instead of --resolution; voxels have their centres at multiples of it", "", "voxel_size_world",
        &RemeshOptions::voxel_size_world, OnResume::of_shell, kLengths, 0, "resolution"},
       {group,
        "band",

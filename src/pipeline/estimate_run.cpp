@@ -21,8 +21,7 @@ RunEstimate estimate_run(const TriangleSoup& soup, const WorldBox& box, const In
   if (soup.regions.empty()) return estimate_plan(plan, soup, resolution);
   const std::vector<double> of_face_world = lengths_of_faces_world(soup.regions, plan.options.region_edge_lengths);
   return estimate_walls(plan, soup, of_face_world,
-                        resolution > 0 ? LatticeFrame::around(plan.box.min, plan.box.max, resolution)
-                                       : frame_of_walls(soup, plan, of_face_world));
+                        resolution > 0 ? plan.frame(resolution) : frame_of_walls(soup, plan, of_face_world));
 }
 
 }  // namespace isoshell

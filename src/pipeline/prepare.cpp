@@ -168,7 +168,7 @@ class GridSearch {
   /// The grid on which the smallest cells are as wide as all are without lengths, less where memory does not allow it.
   int32_t resolution_for_lengths(int32_t usual) {
     allows(usual, false);
-    const double voxel_size = frame_of(usual).voxel_size;
+    const double voxel_size = plan_.frame(usual).voxel_size;
     const std::optional<double> cell_world = smallest_cell_world(usual, voxel_size);
     if (!cell_world) return usual;
     int32_t resolution = resolution_for_cell(voxel_size * (usual - 1), *cell_world, plan_.target.vertices);
@@ -182,7 +182,7 @@ class GridSearch {
   /// finer one; of all else the resolution that is given. The voxels that hold a needle are about as many as it is
   /// long, those that hold other surfaces as many as their area.
   int32_t resolution_for_needle(int32_t resolution) {
-    const double voxel = frame_of(resolution).voxel_size;
+    const double voxel = plan_.frame(resolution).voxel_size;
     const double area_vox = plan_.input.area_world / (voxel * voxel);
     if (!plan_.chooses_grid() || area_vox > 2 * resolution || !allows(resolution, false)) return resolution;
     const auto sites =
@@ -192,11 +192,8 @@ class GridSearch {
     return int32_t(std::clamp<double>(wanted, std::min(kMinDefaultResolution, resolution), resolution));
   }
 
-  LatticeFrame frame_of(int32_t resolution) const {
-    return LatticeFrame::around(plan_.box.min, plan_.box.max, resolution);
-  }
   LatticeSurface snapped(int32_t resolution) {
-    LatticeSurface surface = run_.timed("snap", [&] { return snap_surface(soup_, frame_of(resolution), context_); });
+    LatticeSurface surface = run_.timed("snap", [&] { return snap_surface(soup_, plan_.frame(resolution), context_); });
     surface.topology = plan_.input;
     return surface;
   }

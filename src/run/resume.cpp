@@ -24,12 +24,6 @@ RequestedOptions kept_options(const std::string& json, const std::string& path) 
   }
 }
 
-/// Whether voxels of that size would give the file's grid: LatticeFrame::around turned round.
-bool gives_grid(double voxel_size_world, const LatticeFrame& frame) {
-  const double longest_world = frame.voxel_size * (frame.resolution - 1);
-  return std::floor(longest_world / voxel_size_world + 0.5) + 1 == frame.resolution;
-}
-
 bool is_chosen(const RemeshOptions& o) { return !o.closing_vox && !o.closing_world; }
 
 /// Whether a run that asks for this closing would have made the file.
@@ -62,7 +56,7 @@ std::optional<InFile> shown_in_file(const OptionRow& row, const StageFile& file,
   };
   if (name == "resolution") return InFile{!o.resolution || o.resolution == frame.resolution, text(frame.resolution)};
   if (name == "voxel-size")
-    return InFile{!o.voxel_size_world || gives_grid(*o.voxel_size_world, frame), text(frame.voxel_size)};
+    return InFile{!o.voxel_size_world || *o.voxel_size_world == frame.voxel_size, text(frame.voxel_size)};
   if (name == "band") return InFile{o.band_vox == file.shell.band_vox, text(file.shell.band_vox)};
   if (name == "close-gaps") return InFile{gives_closing(o, kept, file), text(2 * file.info.closing_vox) + "vox"};
   if (name == "vertices") return InFile{!o.vertices || o.vertices == file.seeds->size(), text(file.seeds->size())};

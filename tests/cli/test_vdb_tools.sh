@@ -86,6 +86,7 @@ grep -q 'named twice' "$folder/why.txt"
 page=$(cd "$(dirname "$0")/../.." && pwd)/docs/guide/pipelines.md
 mkdir "$folder/page"
 cp "$folder/file.ply" "$folder/page/scan.ply"
+vdb_tool -quiet -sphere r=0.7 center='(0.81,0.02,0)' voxel=0.05 -ls2mesh -write "$folder/page/part.ply"
 (
   cd "$folder/page"
   vdb_tool -quiet -sphere r=1 voxel=0.05 name=surface -grad keep=1 -write both.vdb
@@ -106,7 +107,7 @@ for name, side in (("piece1", 1), ("piece2", -1)):
 vdb.write("pieces.vdb", grids=pieces)'
   vdb_isomesh() { "$command" "$@" --quiet; }
   sed -n 's/^    \(vdb_\)/\1/p' "$page" > lines.txt
-  test "$(wc -l < lines.txt)" -eq 7
+  test "$(wc -l < lines.txt)" -eq 10
   while read -r line; do
     eval "$line" < /dev/null || { echo "docs/guide/pipelines.md: $line"; exit 1; }
   done < lines.txt

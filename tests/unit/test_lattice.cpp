@@ -1,4 +1,6 @@
 // The lattice and the leaf arithmetic.
+#include <cmath>
+
 #include "core/voxel_set.h"
 #include "isoshell/advanced/lattice.h"
 #include "isoshell/error.h"
@@ -17,6 +19,31 @@ TEST_CASE("lattice: the longest side spans exactly `resolution` voxels", "[latti
   CHECK(f.extent_vox[0] % 8 == 0);
   CHECK(f.extent_vox[0] >= 64 + 2 * kMarginVox);
   CHECK_THROWS_AS(LatticeFrame::around({0, 0, 0}, {1, 1, 1}, kMaxResolution + 1), Error);
+}
+
+TEST_CASE("lattice: one of a voxel size lies on its multiples, by whole leaves, with its margins", "[lattice][unit]") {
+  for (const double voxel : {.1, 1. / 3, .007}) {
+    const WorldPoint low{-1.234, 2.5, 1003.21}, high{.777, 3.01, 1004};
+    const LatticeFrame f = LatticeFrame::on_multiples(low, high, voxel);
+    CHECK(f.voxel_size == voxel);
+    CHECK(f.resolution == int32_t(std::floor(2.011 / voxel + .5)) + 1);
+    const IndexSpace index = f.index_space();
+    CHECK((index.zero_world.x == 0 && index.zero_world.y == 0 && index.zero_world.z == 0));
+    CHECK((index.first.x % 8 == 0 && index.first.y % 8 == 0 && index.first.z % 8 == 0));
+    CHECK(f.origin.x == Approx((index.first.x - .5) * voxel));
+    CHECK(f.origin.z == Approx((index.first.z - .5) * voxel));
+    const PointQ8 lo = f.snap(low), hi = f.snap(high);
+    for (const int32_t at : {lo.x, lo.y, lo.z}) CHECK((at >= kMarginVox * 256 && at < (kMarginVox + 8) * 256));
+    CHECK((hi.x < (f.extent_vox[0] - kMarginVox) * 256 && hi.z < (f.extent_vox[2] - kMarginVox) * 256));
+    LatticeFrame moved = f;
+    moved.origin.y += .3 * voxel;
+    CHECK(moved.index_space().first == Voxel{0, 0, 0});
+    CHECK(moved.index_space().zero_world.y == moved.origin.y + voxel / 2);
+  }
+  CHECK_THROWS_AS(LatticeFrame::on_multiples({0, 0, 0}, {1, 1, 1}, 1e-5), Error);
+  CHECK_THROWS_AS(LatticeFrame::on_multiples({0, 0, 0}, {0, 0, 0}, 1), Error);
+  const IndexSpace far = LatticeFrame::on_multiples({1e9, 0, 0}, {1e9 + 1, 1, 1}, .1).index_space();
+  CHECK((far.first == Voxel{0, 0, 0} && far.zero_world.x != 0));  // 32 bits do not number these
 }
 
 TEST_CASE("leaf: a key and its leaf are each other's inverse and order as NanoVDB does", "[leaf][unit]") {

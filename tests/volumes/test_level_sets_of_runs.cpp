@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "geometry/box.h"
 #include "geometry/triangle_search.h"
 #include "geometry/world_vector.h"
 #include "isoshell/advanced/each_voxel.h"
@@ -194,6 +195,34 @@ TEST_CASE("level set of a run: that of the result is exact to its triangles, in 
     if (exact > 1e-6) REQUIRE((distance < 0) == is_inside(of_result.mesh, p));
   });
   CHECK(least < -2.5 * voxel);
+}
+
+TEST_CASE("level set of a run: those of one voxel size have the same voxels, as OpenVDB makes them, and are united",
+          "[level_set]") {
+  constexpr double kVoxel = .05;
+  const TemporaryFile files[] = {TemporaryFile("left.vdb"), TemporaryFile("right.vdb")};
+  const WorldPoint middles[] = {kMiddle, {kMiddle.x + 1.1, kMiddle.y - .013, kMiddle.z}};
+  for (const size_t i : {size_t(0), size_t(1)}) {
+    RunRequest request = request_of(300, 0);
+    request.options.values.resolution.reset();
+    request.options.given = {"vertices", "voxel-size"};
+    request.options.values.voxel_size_world = kVoxel;
+    request.level_set.path = files[i].path;
+    TestContext context;
+    run(input_of(shapes::sphere(middles[i], kRadius, 32), "shape"), request, context);
+    const openvdb::FloatGrid::Ptr grid = read_surface(files[i].path);
+    CHECK(grid->transform() == *openvdb::math::Transform::createLinearTransform(kVoxel));
+    const openvdb::Vec3d top = grid->worldToIndex({middles[i].x, middles[i].y, middles[i].z + kRadius});
+    CHECK(std::abs(double(grid->tree().getValue(openvdb::Coord::round(top)))) < kVoxel);
+  }
+  InputRequest both;
+  both.path = files[0].path;
+  both.also = {files[1].path};
+  both.unite = true;
+  const Input united = read_input(both, 0);
+  const WorldBox box = box_of(united.soup.vertices);
+  CHECK(box.min.x == Approx(kMiddle.x - kRadius).margin(.1 * kVoxel));
+  CHECK(box.max.x == Approx(middles[1].x + kRadius).margin(.1 * kVoxel));
 }
 
 TEST_CASE("level set of a run: that of a hollow result is positive in the hollow", "[level_set]") {

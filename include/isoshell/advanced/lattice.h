@@ -45,8 +45,14 @@ struct BoxOf {
 };
 using WorldBox = BoxOf<WorldPoint>;
 
+/// How other programs number the voxels of a lattice, by the centres.
+struct IndexSpace {
+  Voxel first{0, 0, 0};             ///< the index of voxel (0,0,0), of multiples of 8
+  WorldPoint zero_world{0, 0, 0};  ///< where index (0,0,0) lies
+};
+
 /// Where the lattice lies in the world. `origin` is the corner of voxel (0,0,0); the surface starts kMarginVox + 1/2
-/// voxels in.
+/// voxels in, or up to 8 more.
 struct LatticeFrame {
   WorldPoint origin{0, 0, 0};
   double voxel_size = 1;       ///< world units
@@ -56,6 +62,12 @@ struct LatticeFrame {
   /// Frame whose longest side spans exactly `resolution` voxels of the box, smallest corner in the middle of a voxel.
   /// Throws: usage when resolution is outside 1..kMaxResolution, nothing_to_mesh when the box is empty or not finite.
   static LatticeFrame around(WorldPoint box_min, WorldPoint box_max, int32_t resolution);
+  /// Frame of voxels of exactly this size around the box, whose centres are multiples of it: any two surfaces have the
+  /// same voxels then, as those that OpenVDB makes. Throws: usage where the size gives fewer than 1 or more than
+  /// kMaxResolution voxels along the longest side, nothing_to_mesh when the box is empty or not finite.
+  static LatticeFrame on_multiples(WorldPoint box_min, WorldPoint box_max, double voxel_size);
+  /// Of a frame on multiples the index is the multiple; of others it is the voxel.
+  IndexSpace index_space() const;
   /// Nearest fixed-point position, halves up. The only way from world units into the lattice.
   PointQ8 snap(WorldPoint p) const;
   /// The only way back.

@@ -27,17 +27,22 @@ inline AffineMap affine_map_of(const openvdb::GridBase& grid) {
 }
 
 /// A transform of voxels of any size, as a file has it: the constructors of OpenVDB refuse scales whose product is
-/// below 3e-15, and what reads files does not.
+/// below 3e-15, and what reads files does not. Without a translation it equals one that OpenVDB's programs make so.
 inline openvdb::math::Transform::Ptr transform_of_scales(const openvdb::Vec3d& scale,
                                                          const openvdb::Vec3d& translation) {
   using namespace openvdb::math;
   const bool is_uniform = scale.x() > 0 && scale.x() == scale.y() && scale.x() == scale.z();
+  const bool has_translation = translation != openvdb::Vec3d(0);
   const openvdb::Vec3d inverse = 1.0 / scale, size(Abs(scale.x()), Abs(scale.y()), Abs(scale.z()));
   std::stringstream bytes;
   openvdb::io::setCurrentVersion(bytes);
-  openvdb::writeString(bytes, is_uniform ? UniformScaleTranslateMap::mapType() : ScaleTranslateMap::mapType());
-  for (const openvdb::Vec3d& part : {translation, scale, size, inverse, inverse * inverse, inverse / 2})
-    part.write(bytes);
+  if (has_translation) {
+    openvdb::writeString(bytes, is_uniform ? UniformScaleTranslateMap::mapType() : ScaleTranslateMap::mapType());
+    translation.write(bytes);
+  } else {
+    openvdb::writeString(bytes, is_uniform ? UniformScaleMap::mapType() : ScaleMap::mapType());
+  }
+  for (const openvdb::Vec3d& part : {scale, size, inverse, inverse * inverse, inverse / 2}) part.write(bytes);
   auto transform = std::make_shared<Transform>();
   transform->read(bytes);
   return transform;

@@ -4,6 +4,7 @@
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include "core/copy_product.h"
+#include "io/openvdb/grid_map.h"
 #include "io/openvdb/shell_values.h"
 #include "io/openvdb/vdb_grids.h"
 #include "io/openvdb/vdb_stream.h"
@@ -22,12 +23,14 @@ namespace {
 VdbFloatGrid::Ptr grid_of(const LevelSet& level_set, const LevelSetWriteOptions& options) {
   const double voxel = level_set.frame.voxel_size;
   const View<const float> distance_vox = level_set.distance_vox.view();
+  const IndexSpace index = level_set.frame.index_space();
   auto grid =
       make_voxel_grid<VdbFloatGrid>(options.name.c_str(), float(level_set.band_vox * voxel), level_set.voxels,
-                                    [&](int64_t, int, int64_t i) { return float(double(distance_vox[i]) * voxel); });
+                                    [&](int64_t, int, int64_t i) { return float(double(distance_vox[i]) * voxel); }, index.first);
   openvdb::tools::signedFloodFill(grid->tree());
   openvdb::tools::pruneLevelSet(grid->tree());
-  grid->setTransform(lattice_transform(level_set.frame));
+  const WorldPoint& zero = index.zero_world;
+  grid->setTransform(transform_of_scales(openvdb::Vec3d(voxel), {zero.x, zero.y, zero.z}));
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setSaveFloatAsHalf(options.as_half);
   grid->setCreator(vdb_format::kCreator);

@@ -53,14 +53,17 @@ void add_vdb_leaves(GridT& grid, int64_t count, LeafAt leaf_at, Fill fill) {
   for (auto& leaf : leaves) grid.tree().root().addLeaf(leaf.release());
 }
 
-/// A grid whose active voxels are `voxels`, each with value_at(its index).
+/// A grid whose active voxels are `voxels`, moved by whole leaves, each with value_at(its index).
 template <class GridT, class ValueAt>
 typename GridT::Ptr make_voxel_grid(const char* name, const typename GridT::ValueType& background,
-                                    const VoxelSet& voxels, ValueAt value_at) {
+                                    const VoxelSet& voxels, ValueAt value_at, Voxel by_vox = {0, 0, 0}) {
   auto grid = new_vdb_grid<GridT>(name, background);
   const VoxelSetView view = voxels.view();
   add_vdb_leaves(
-      *grid, voxels.leaf_count(), [&](int64_t l) { return leaf_of_key(view.leaf_key[l]); },
+      *grid, voxels.leaf_count(), [&](int64_t l) {
+        const Voxel leaf = leaf_of_key(view.leaf_key[l]);
+        return Voxel{leaf.x + by_vox.x / 8, leaf.y + by_vox.y / 8, leaf.z + by_vox.z / 8};
+      },
       [&](int64_t l, typename GridT::ValueType* values) {
         for_each_active(view, l, [&](int offset, int64_t i) { values[offset] = value_at(l, offset, i); });
         return view.mask[l];

@@ -65,12 +65,20 @@ std::string metadata_bytes(const VdbGridSpan& grid) {
   return bytes + raw(std::string("is_saved_as_half_float")) + raw(std::string("bool")) + raw(std::string(1, half));
 }
 
-/// Whether the map is one of scales and a translation that OpenVDB reads and writes, but does not copy.
+/// Whether the map is one of scales, and maybe a translation, that OpenVDB reads and writes, but does not copy.
 bool is_too_small(const openvdb::math::MapBase& map) {
   using namespace openvdb::math;
   constexpr double kLeastCopied = 1e-14;  // above the 3e-15 that it says, by the rounding of a product
-  return (map.isType<UniformScaleTranslateMap>() || map.isType<ScaleTranslateMap>()) &&
-         map.voxelSize().x() * map.voxelSize().y() * map.voxelSize().z() < kLeastCopied;
+  return !map.isType<openvdb::math::AffineMap>() && map.voxelSize().x() * map.voxelSize().y() * map.voxelSize().z() < kLeastCopied;
+}
+
+/// One of the same type that OpenVDB copies.
+openvdb::math::Transform::Ptr large_transform_like(const openvdb::math::MapBase& map) {
+  using namespace openvdb::math;
+  const bool is_uniform = map.isType<UniformScaleTranslateMap>() || map.isType<UniformScaleMap>();
+  const bool has_translation = map.isType<UniformScaleTranslateMap>() || map.isType<ScaleTranslateMap>();
+  return transform_of_scales(is_uniform ? openvdb::Vec3d(1) : openvdb::Vec3d(1, 2, 3),
+                             openvdb::Vec3d(has_translation ? 1 : 0));
 }
 
 /// The file of one grid. OpenVDB copies its transform to write it: small voxels are put in the place of large ones.
@@ -78,8 +86,7 @@ std::vector<char> bytes_of(const StreamArchive& archive, const openvdb::GridBase
   const openvdb::math::Transform::Ptr transform = grid->transformPtr();
   const auto map = transform->baseMap();
   if (!is_too_small(*map)) return archive.bytes({grid}, {});
-  const bool is_uniform = map->isType<openvdb::math::UniformScaleTranslateMap>();
-  grid->setTransform(transform_of_scales(is_uniform ? openvdb::Vec3d(1) : openvdb::Vec3d(1, 2, 3), openvdb::Vec3d(1)));
+  grid->setTransform(large_transform_like(*map));
   std::vector<char> file = archive.bytes({grid}, {});
   std::ostringstream out;
   transform->write(out);

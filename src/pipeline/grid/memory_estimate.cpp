@@ -27,7 +27,7 @@ RunEstimate estimate_plan(const Plan& plan, const TriangleSoup& soup, int32_t re
   const InputTopology& input = plan.input;
   RunEstimate e;
   e.resolution = resolution > 0 ? resolution : plan.first_resolution();
-  const LatticeFrame frame = LatticeFrame::around(plan.box.min, plan.box.max, e.resolution);
+  const LatticeFrame frame = plan.frame(e.resolution);
   e.voxel_size_world = frame.voxel_size;
   e.vertices = plan.target.vertices;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "geometry/box.h"
 #include "geometry/world_vector.h"
 #include "isoshell/error.h"
 
@@ -81,14 +82,16 @@ Plan plan_of(const RemeshOptions& checked_options, const InputTopology& input, c
 
 int32_t Plan::first_resolution() const {
   if (options.resolution) return *options.resolution;
-  const double longest = std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
+  const double longest = longest_side(box);
   if (options.voxel_size_world) return requested_voxel_resolution(longest, *options.voxel_size_world);
   const double spacing = std::sqrt(input.area_world / double(target.vertices));
   return spacing > 0 ? resolution_for_cell(longest, spacing, target.vertices) : kMinDefaultResolution;
 }
 
-double Plan::first_voxel_size_world() const {
-  return LatticeFrame::around(box.min, box.max, first_resolution()).voxel_size;
+LatticeFrame Plan::frame(int32_t resolution) const {
+  if (!options.voxel_size_world) return LatticeFrame::around(box.min, box.max, resolution);
+  requested_voxel_resolution(longest_side(box), *options.voxel_size_world);
+  return LatticeFrame::on_multiples(box.min, box.max, *options.voxel_size_world);
 }
 
 RelaxOptions relax_options(const RemeshOptions& options) {
