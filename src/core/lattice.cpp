@@ -10,8 +10,8 @@
 namespace isoshell {
 namespace {
 
-constexpr double kMostIndex = 1 << 30;        ///< of OpenVDB's, which are 32 bits wide
-constexpr double kOfOneCentreVox = 1e-6;      ///< centres that lie no farther apart are one
+constexpr double kMostIndex = 1 << 30;    ///< of OpenVDB's, which are 32 bits wide
+constexpr double kOfOneCentreVox = 1e-6;  ///< centres that lie no farther apart are one
 
 void check_longest(double longest) {
   if (!(longest > 0) || !std::isfinite(longest))

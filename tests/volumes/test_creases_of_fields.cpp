@@ -200,7 +200,8 @@ TEST_CASE("creases of fields: hollow creases that a level set's maker filled are
   }
 }
 
-TEST_CASE("creases of fields: around steps of one or two voxels no triangle higher than 1/32 is folded onto another", "[volume][unit]") {
+TEST_CASE("creases of fields: around steps of one or two voxels no triangle higher than 1/32 is folded onto another",
+          "[volume][unit]") {
   for (const double step : {1.2, 1.6, 1.9}) {
     const Turn turn = turned_by(.21, .13);
     const auto bored = [&](const WorldPoint& p) {  // a plate with a hole that is wider in its upper half

@@ -47,7 +47,7 @@ using WorldBox = BoxOf<WorldPoint>;
 
 /// How other programs number the voxels of a lattice, by the centres.
 struct IndexSpace {
-  Voxel first{0, 0, 0};             ///< the index of voxel (0,0,0), of multiples of 8
+  Voxel first{0, 0, 0};            ///< the index of voxel (0,0,0), of multiples of 8
   WorldPoint zero_world{0, 0, 0};  ///< where index (0,0,0) lies
 };
 

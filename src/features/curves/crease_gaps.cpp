@@ -12,8 +12,8 @@
 namespace isoshell {
 namespace {
 
-constexpr double kStraightOn = .5;         // cosine between a crease and the way on: 60 degrees
-constexpr double kTurnsDegrees = 20;       // from these on an edge counts as long as it is
+constexpr double kStraightOn = .5;          // cosine between a crease and the way on: 60 degrees
+constexpr double kTurnsDegrees = 20;        // from these on an edge counts as long as it is
 constexpr double kDirectionInReaches = .5;  // of a crease, of which its direction is taken
 constexpr double kLeastRing = 4;            // reaches: shorter creases do not become rings
 

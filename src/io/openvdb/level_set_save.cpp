@@ -24,9 +24,9 @@ VdbFloatGrid::Ptr grid_of(const LevelSet& level_set, const LevelSetWriteOptions&
   const double voxel = level_set.frame.voxel_size;
   const View<const float> distance_vox = level_set.distance_vox.view();
   const IndexSpace index = level_set.frame.index_space();
-  auto grid =
-      make_voxel_grid<VdbFloatGrid>(options.name.c_str(), float(level_set.band_vox * voxel), level_set.voxels,
-                                    [&](int64_t, int, int64_t i) { return float(double(distance_vox[i]) * voxel); }, index.first);
+  auto grid = make_voxel_grid<VdbFloatGrid>(
+      options.name.c_str(), float(level_set.band_vox * voxel), level_set.voxels,
+      [&](int64_t, int, int64_t i) { return float(double(distance_vox[i]) * voxel); }, index.first);
   openvdb::tools::signedFloodFill(grid->tree());
   openvdb::tools::pruneLevelSet(grid->tree());
   const WorldPoint& zero = index.zero_world;

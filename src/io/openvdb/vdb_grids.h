@@ -60,7 +60,8 @@ typename GridT::Ptr make_voxel_grid(const char* name, const typename GridT::Valu
   auto grid = new_vdb_grid<GridT>(name, background);
   const VoxelSetView view = voxels.view();
   add_vdb_leaves(
-      *grid, voxels.leaf_count(), [&](int64_t l) {
+      *grid, voxels.leaf_count(),
+      [&](int64_t l) {
         const Voxel leaf = leaf_of_key(view.leaf_key[l]);
         return Voxel{leaf.x + by_vox.x / 8, leaf.y + by_vox.y / 8, leaf.z + by_vox.z / 8};
       },

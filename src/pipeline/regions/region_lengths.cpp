@@ -127,8 +127,7 @@ LatticeFrame frame_of_walls(const TriangleSoup& walls, const Plan& plan, const s
   const WorldPoint &low = plan.box.min, &high = plan.box.max;
   const int32_t resolution = resolution_for_walls(walls, plan, of_face_world);
   const bool is_periodic = walls.regions.is_periodic();  // a translation by a period must be one on the lattice
-  if (!walls.regions.are_of_voxels || !(plan.chooses_grid() || is_periodic))
-    return plan.frame(resolution);
+  if (!walls.regions.are_of_voxels || !(plan.chooses_grid() || is_periodic)) return plan.frame(resolution);
   const double step_world = walls.regions.voxel_size_world;
   const auto steps_along = [&](double side) { return std::max(std::ceil(side / step_world - 0.5 / kOneVoxelQ8), 1.); };
   const int32_t most = std::min(is_periodic ? kMaxResolution : kMostFiner * resolution, kMaxResolution - 1);
