@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <unordered_set>
+#include <utility>
 
 #include "core/parallel_ranges.h"
 #include "core/watched.h"
@@ -89,9 +90,7 @@ class Slivers : private EditableMesh {
  public:
   /// Heights in steps.
   Slivers(EditableMesh mesh, double least_height, double strip_height)
-      : EditableMesh(std::move(mesh)), least_(least_height), strip_(strip_height), reach_(vertices().size(), 0) {
-    keep_apart(cell());
-  }
+      : EditableMesh(std::move(mesh)), least_(least_height), strip_(strip_height), reach_(vertices().size(), 0) {}
 
   /// `found`: slivers, which are not gone.
   bool remove(std::vector<uint32_t> found, const Context& context) {
@@ -135,6 +134,12 @@ class Slivers : private EditableMesh {
     uint32_t a, b, c, d, triangle, other;
     size_t edge;
   };
+
+  /// Once a change is about to be made, which on scans none is: it takes most of the time to put triangles into cells.
+  bool are_kept_apart() {
+    if (!std::exchange(is_apart_, true)) keep_apart(cell());
+    return true;
+  }
 
   /// A triangle's box meets few of them in the mean, however large some triangles are.
   double cell() const {
@@ -285,7 +290,9 @@ class Slivers : private EditableMesh {
 
   bool flip(const Flap& f, bool is_longest) {
     if (!may_change_around(f.c) || !may_change_around(f.d) || was_flipped_.count(edge_key(f.c, f.d)) > 0) return false;
-    if (!EditableMesh::flip(f.triangle, f.edge, change_, [&] { return should_flip(f, is_longest); })) return false;
+    if (!EditableMesh::flip(f.triangle, f.edge, change_,
+                            [&] { return should_flip(f, is_longest) && are_kept_apart(); }))
+      return false;
     was_flipped_.insert(edge_key(f.a, f.b));
     for (const uint32_t t : {f.triangle, f.other})
       for (size_t i = 0; i < 3; ++i)
@@ -311,7 +318,7 @@ class Slivers : private EditableMesh {
         const WorldPoint was = area_of(change_.number[i]), now = normal(change_.made[i]);
         if (!is_thin(change_.number[i]) && !(dot(was, now) > kLeastCosine * length(was) * length(now))) return false;
       }
-      return true;
+      return are_kept_apart();
     };
     if (!EditableMesh::collapse(gone, into, change_, turns_little)) return false;
     reach_[into] = std::max(reach_[into], reach);
@@ -320,6 +327,7 @@ class Slivers : private EditableMesh {
   }
 
   double least_, strip_;
+  bool is_apart_ = false;
   std::vector<double> reach_;      ///< per vertex how far what was taken into it was away, at most
   std::vector<uint32_t> waiting_;  ///< triangles
   /// Edges do not come back: where surfaces are bent, what is better differs from triangle to triangle, without an end.
