@@ -33,37 +33,39 @@ class ManyCandidates {
     if (lane_ < kMaxMany / 32) scratch_.used[lane_] = 0;
     __syncwarp();
     for (int i = lane_; i < patch_.vertices; i += 32) {
-      const int best = nearest(i, count).number;
-      scratch_.label[i] = uint8_t(best);
+      const int best = nearest(i, scratch_.many, count);
       atomicOr(&scratch_.used[best >> 5], 1u << (best & 31));
     }
     __syncwarp();
-    return take_used(search, found);
+    const int used = list_used();
+    if (used > kMaxWinners) return false;
+    for (int i = lane_; i < patch_.vertices; i += 32) scratch_.label[i] = uint8_t(nearest(i, scratch_.search.id, used));
+    __syncwarp();
+    search.take(scratch_.search.id, used, scratch_.winners, found);
+    return true;
   }
 
  private:
-  struct Nearest {
-    int64_t cost;
-    int number;
-  };
-  __device__ Nearest nearest(int i, int count) const {
+  /// Number of the seed among these that costs vertex i least, the one with the least id of several.
+  __device__ int nearest(int i, const uint32_t* ids, int count) const {
     const Local u = pass_.patches.vertex[patch_.vertex_first + i].local();
     const PointQ8 v = {patch_.bounds.origin.x + u.x, patch_.bounds.origin.y + u.y, patch_.bounds.origin.z + u.z};
     const Normal8 normal = SeedRecord{0, 0, 0, pass_.patches.normal[patch_.vertex_first + i]}.normal();
-    Nearest best{INT64_MAX, 0};
+    int64_t least = INT64_MAX;
     uint32_t best_id = kNone;
+    int best = 0;
     for (int c = 0; c < count; ++c) {
-      const uint32_t id = scratch_.many[c];
+      const uint32_t id = ids[c];
       const SeedRecord s = pass_.search.seed[id];
       const int64_t here = distance_sq_q16(v, s.position()) +
                            (dot(normal, s.normal()) < label::kOpposite ? pass_.search.penalty_q16 : 0);
-      if (here < best.cost || (here == best.cost && id < best_id)) best = {here, c}, best_id = id;
+      if (here < least || (here == least && id < best_id)) least = here, best = c, best_id = id;
     }
     return best;
   }
 
-  /// Numbers the candidates that label a vertex from 0 on.
-  __device__ bool take_used(const PatchSearch& search, SearchResult& found) {
+  /// Lists the candidates that label a vertex, as far as they are no more than winners can be. Returns their number.
+  __device__ int list_used() {
     int count = 0;
     for (int w = 0; w < kMaxMany / 32; ++w) {
       const uint32_t word = scratch_.used[w];
@@ -71,16 +73,8 @@ class ManyCandidates {
       if (word >> lane_ & 1 && place < kMaxWinners) scratch_.search.id[place] = scratch_.many[w * 32 + lane_];
       count += __popc(word);
     }
-    if (count > kMaxWinners) return false;
-    for (int i = lane_; i < patch_.vertices; i += 32) {
-      const int old = scratch_.label[i];
-      int now = __popc(scratch_.used[old >> 5] & ((1u << (old & 31)) - 1));
-      for (int w = 0; w < old >> 5; ++w) now += __popc(scratch_.used[w]);
-      scratch_.label[i] = uint8_t(now);
-    }
     __syncwarp();
-    search.take(scratch_.search.id, count, scratch_.winners, found);
-    return true;
+    return count;
   }
 
   const SheetPass& pass_;

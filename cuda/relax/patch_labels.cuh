@@ -30,7 +30,7 @@ struct SheetPass {
   int32_t tolerance_ppb;
 };
 
-constexpr int kMaxMany = 256;
+constexpr int kMaxMany = 480;  ///< tips whose vertices all pay have both sides of five cells around as candidates
 
 constexpr int kStagedVertices = 256;  ///< that are copied to shared memory; most patches have no more
 
