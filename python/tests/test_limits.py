@@ -72,6 +72,10 @@ def box(low: tuple[float, ...], high: tuple[float, ...]) -> Mesh:
     return np.array(low) + vertices * (np.array(high) - np.array(low)), faces
 
 
+def without_floor(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
+    return vertices, faces[vertices[faces][:, :, 2].max(axis=1) > vertices[:, 2].min()]
+
+
 def sheet(x: tuple[float, ...], y: tuple[float, ...], corner: tuple[float, ...] = (0, 0, 0), n: int = 20) -> Mesh:
     """A parallelogram of n by n squares."""
     i, j = np.divmod(np.arange((n + 1) ** 2), n + 1)
@@ -99,20 +103,24 @@ def test_detail(run, tmp_path, claim):
     assert run(source, "--vertices", 300, "--require", "max-deviation=0.01").status == 6
 
 
-@claims("Slits below two voxels", "parts so near become one, a warning says so", "`topology.agrees_with_input`",
-        "Crisp parts whose creases are kept stay apart")
+@claims("Slits below two voxels", "parts so near become", "a warning says so, and `topology.agrees_with_input`",
+        "closed surfaces are meshed on their own triangles, and stay apart")
 def test_slits(run, tmp_path, claim):
     voxel = 1 / 64
-    source = write_obj(tmp_path / "slit.obj", *joined(box((0, 0, 0), (1, 1, 1)), box((1 + voxel, 0, 0), (2, 1, 1))))
+    near = (box((0, 0, 0), (1, 1, 1)), box((1 + voxel, 0, 0), (2, 1, 1)))
+    source = write_obj(tmp_path / "slit.obj", *joined(*near))
+    open_source = write_obj(tmp_path / "open.obj", *joined(*(without_floor(*part) for part in near)))
     wide = write_obj(tmp_path / "wide.obj", *joined(box((0, 0, 0), (1, 1, 1)), box((1 + 3 * voxel, 0, 0), (2, 1, 1))))
     usual = ("--vertices", 500, "--voxel-size", voxel)
-    done = run(source, *usual, "--features", "off")
+    done = run(source, *usual, "--method", "shell")
     assert done.stats["topology"]["components"] == 1 and not done.stats["topology"]["agrees_with_input"]
     assert "warning: the solid has 1 component " in done.said
-    assert run(wide, *usual, "--features", "off").stats["topology"]["components"] == 2
-    crisp = run(source, *usual)
-    assert crisp.stats["features"]["kept"] and crisp.stats["topology"]["agrees_with_input"]
-    assert crisp.stats["topology"]["components"] == 2 and "warning" not in crisp.said
+    assert run(wide, *usual, "--method", "shell").stats["topology"]["components"] == 2
+    assert run(open_source, *usual, "--features", "off").stats["topology"]["components"] == 1
+    for options in ((), ("--features", "off"), ("--edge-length", 0.1)):
+        apart = run(source, "--voxel-size", voxel, *(options or ("--vertices", 500)))
+        assert apart.stats["topology"]["agrees_with_input"] and apart.status == 0
+        assert apart.stats["topology"]["components"] == 2 and "solid has" not in apart.said
 
 
 @claims("cost memory with the square of their number")
@@ -263,7 +271,7 @@ def test_intersections_of_the_input(run, tmp_path, claim):
 def test_gates_on_topology(run, tmp_path, claim):
     near = joined(box((0, 0, 0), (1, 1, 1)), box((1 + 1 / 64, 0, 0), (2, 1, 1)))
     source = write_obj(tmp_path / "slit.obj", *near)
-    usual = ("--vertices", 300, "--voxel-size", 1 / 64, "--features", "off", "--require")
+    usual = ("--vertices", 300, "--voxel-size", 1 / 64, "--method", "shell", "--require")
     assert run(source, *usual, "genus=0,components=2").status == 6
     assert run(source, *usual, "genus=1,components=1").status == 6
     assert run(source, *usual, "genus=0,components=1").status == 0

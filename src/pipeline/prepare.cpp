@@ -1,5 +1,5 @@
-// prepare (see remesh.h): has the input repaired and united, chooses the grid, voxelises, builds the sheet. The grid is
-// made finer while the sheet lacks the input's topology.
+// prepare (see remesh.h): has the input repaired and united, chooses the grid, voxelises, builds the sheet. Where that
+// lacks the input's topology, its own triangles are meshed, and if that cannot be, the grid is made finer.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -137,8 +137,10 @@ class GridSearch {
       std::optional<PreparedSurface> p = with_sheet(snapped(resolution), is_refining);
       if (!p) break;
       const int64_t gap = topology_gap(*p);
-      if (gap > 0 && !is_refining && !had_curves)
+      if (gap > 0 && !is_refining && plan_.options.previous && !had_curves)
         if (std::optional<PreparedSurface> cut = cut_at_once(host_copy(p->surface))) return std::move(*cut);
+      if (gap > 0 && !is_refining && !plan_.options.previous && reachable && is_cut_on_own_triangles(*p))
+        return std::move(*p);
       fruitless = gap < best_gap ? 0 : fruitless + 1;
       if (gap < best_gap) {
         best_gap = gap;
@@ -196,6 +198,23 @@ class GridSearch {
     LatticeSurface surface = run_.timed("snap", [&] { return snap_surface(soup_, plan_.frame(resolution), context_); });
     surface.topology = plan_.input;
     return surface;
+  }
+
+  /// Whether a surface is finished on its own triangles, with curves or none, as the sheet joins what is near there, or
+  /// has other handles. Otherwise nothing is told of it.
+  bool is_cut_on_own_triangles(PreparedSurface& p) {
+    if (!may_be_on_own_triangles(plan_, p.surface.first_cap != kNone)) return false;
+    const size_t warnings = run_.warnings.size();
+    const int64_t bytes = run_.memory_estimate_bytes;
+    p.needs_own_triangles = true;
+    finish(p, source_, run_);
+    if (is_on_own_triangles(p)) return true;
+    p.needs_own_triangles = false;
+    p.cut.reset();
+    p.report.features = {};
+    run_.warnings.resize(warnings);
+    run_.memory_estimate_bytes = bytes;
+    return false;
   }
 
   /// A frame that keeps its curves takes the first grid. None where it is no such frame.

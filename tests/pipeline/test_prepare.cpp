@@ -105,6 +105,24 @@ TEST_CASE("prepare: hollows about as small as a voxel do not open the solid arou
   CHECK(volume_in_balls(run) > .9);
 }
 
+TEST_CASE("prepare: smooth bodies within a voxel of one another stay apart, on their own triangles", "[prepare]") {
+  TestContext context;
+  const auto ball = [](double radius) { return shapes::sphere({0, 0, 0}, radius, 64); };
+  const TriangleSoup nested = shapes::together(shapes::together(ball(1), shapes::inside_out(ball(.985))), ball(.97));
+  for (const Features::Creases creases : {Features::Creases::automatic, Features::Creases::off}) {
+    RemeshOptions options;
+    options.vertices = 2000;
+    options.features.creases = creases;
+    const RemeshResult result = remesh(nested, options, context);
+    const MeshTopology topology = check_mesh(result.mesh);
+    CHECK(topology.components == 3);
+    CHECK(topology.is_manifold_with(0));
+    CHECK(result.mesh.vertices.size() == 2000);
+    CHECK(result.report.optimize.self_intersections == 0);
+    CHECK(result.report.warnings.empty());
+  }
+}
+
 TEST_CASE("prepare: a hollow survives coarse levels, and a run from the lattice", "[prepare]") {
   RemeshOptions options;
   options.vertices = 1000;

@@ -128,6 +128,7 @@ struct CutPlan {
   const FoundCreases& creases;
   const LatticeFrame& frame;
   int64_t seeds;  ///< of a surface whose lengths do not decide
+  bool needs_curves;
   CutOptions how = {};
 };
 
@@ -162,7 +163,7 @@ std::shared_ptr<CutSurface> cut_evenly(const CutPlan& plan, const CurveNetwork& 
 /// relaxed here would be no vertices of that.
 CutAlongCurves make_cut(const CutPlan& plan, const CurveNetwork& network, CutSource source, FeatureReport found,
                         Context& context) {
-  if (network.curves.empty())
+  if (plan.needs_curves && network.curves.empty())
     throw NoRoom("features", "edges are too long for that; use more vertices, or a shorter edge length");
   const std::shared_ptr<CutSurface> cut = cut_evenly(plan, network, context);
   if (cut->seeds == 0) cut->seeds = plan.seeds;
@@ -227,7 +228,7 @@ CutAlongCurves cut_network(const FeatureMesh& mesh, const CurveNetwork& network,
                            const FoundCreases& creases, const CutSource& source, int64_t seeds,
                            const PreviousFrame* before, const PreparedSurface& p, const FeatureReport& found,
                            Run& run) {
-  CutPlan plan{mesh, curves, creases, p.surface.frame, seeds};
+  CutPlan plan{mesh, curves, creases, p.surface.frame, seeds, !p.needs_own_triangles};
   add_memory_of_cut(seeds, run);
   CutOptions& how = plan.how;
   how = {edge_length_for(mesh, network, seeds), 0,
@@ -322,7 +323,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
     report_found(mesh, network, is_open, found);
     warn_of_branches(mesh, network, run.warnings);
     found.passed_over_world = std::max(0., creases.candidate_length_world - creases.kept_length_world);
-    if (found.curves == 0 && !is_open) return "";
+    if (found.curves == 0 && !is_open && !p.needs_own_triangles) return "";
     all = describe(mesh, network);
     const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
     if (!against.empty() && is_open) return against;

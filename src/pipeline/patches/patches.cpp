@@ -188,9 +188,9 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, Run& run) {
   const double edge_world = (p.grown ? p.target_of_input : p.target).edge_length_world;
   const Seams seams = seams_of(source.soup, options, edge_world, run);
   const std::shared_ptr<const Polylines>& lines = options.features.lines;
-  if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines && !may_keep_borders(p))
-    return;
-  const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !may_keep_borders(p);
+  const bool needs_cut = p.needs_own_triangles || may_keep_borders(p);
+  if (options.features.creases == Features::Creases::off && seams.edges.empty() && !lines && !needs_cut) return;
+  const bool may_be_uncut = seams.edges.empty() && source.interfaces.empty() && !needs_cut;
   if (may_be_uncut) relax_meanwhile(p, run);
   run.timed("features", [&] {
     std::vector<std::array<WorldPoint, 2>> kept = seams.edges;
@@ -200,8 +200,8 @@ void cut_into_patches(const PatchSource& source, PreparedSurface& p, Run& run) {
     if (!searched.creases && !lines)
       searched.creases = run_with_threads(context, [&] { return find_creases(searched.mesh, curves); });
     const bool is_closed = p.surface.topology.closed && p.surface.topology.oriented;
-    if (is_closed && seams.edges.empty() && !lines && !searched.creases->curve_edges.empty())
-      unite_own_faces(searched, p, run);
+    const bool is_cut = p.needs_own_triangles || (searched.creases && !searched.creases->curve_edges.empty());
+    if (is_closed && seams.edges.empty() && !lines && is_cut) unite_own_faces(searched, p, run);
     FeatureMesh& mesh = searched.mesh;
     FeatureReport& found = p.report.features;
     curves.seams = vertices_of(seams.edges, mesh, p.surface.frame);

@@ -11,13 +11,19 @@
 
 namespace isoshell {
 
-bool may_be_cut_at_once(const Plan& plan, bool has_caps) {
+bool may_be_on_own_triangles(const Plan& plan, bool has_caps) {
   const RemeshOptions& options = plan.options;
   const InputTopology& input = plan.input;
-  const bool needs_sheet = options.method != Method::sheet || options.want_shell || wants_lengths(options) ||
-                           options.edge_length_world || options.closing_vox || options.closing_world;
-  return options.previous && !needs_sheet && input.closed && input.oriented && !has_caps &&
+  const bool closes_gaps = options.closing_vox.value_or(0) > 0 || options.closing_world.value_or(0) > 0;
+  return options.method == Method::sheet && !closes_gaps && input.closed && input.oriented && !has_caps &&
          shows_most_handles(plan.target.vertices, input);
+}
+
+bool may_be_cut_at_once(const Plan& plan, bool has_caps) {
+  const RemeshOptions& options = plan.options;
+  const bool needs_sheet = options.want_shell || wants_lengths(options) || options.edge_length_world ||
+                           options.closing_vox || options.closing_world;
+  return options.previous && !needs_sheet && may_be_on_own_triangles(plan, has_caps);
 }
 
 std::optional<PreparedSurface> prepare_patches_alone(LatticeSurface surface, const RemeshOptions& options,
