@@ -18,10 +18,11 @@ namespace {
 
 constexpr int32_t kFinestTolerancePpb = 100000;  ///< of patches: their fixed seeds keep them from settling soon
 constexpr int32_t kLastPasses = 10;              ///< of the finest level, on the surface itself after a coarser one
-constexpr int64_t kFewPerSeed = 13;              ///< vertices; coarser surfaces have 11 to 17
+constexpr int kMostLevels = 3;
+constexpr int64_t kFewPerSeed = 13;  ///< vertices; coarser surfaces have 11 to 17
 
-RelaxOptions for_finest_patches(const PatchOptions& options) {
-  RelaxOptions relax = for_finest_level(options.relax, options.tolerance_requested);
+RelaxOptions for_finest_patches(const SurfaceMesh& surface, const PatchOptions& options) {
+  RelaxOptions relax = for_finest_level(surface, options.relax, options.tolerance_requested);
   if (!options.tolerance_requested) relax.tolerance_ppb = kFinestTolerancePpb;
   return relax;
 }
@@ -31,7 +32,7 @@ class PatchLevels {
  public:
   PatchLevels(const CutSurface& cut, const PatchOptions& options, Context& context)
       : cut_(cut), free_seeds_(cut), options_(options), context_(context) {
-    for (int level = 0; level < kMaxLevels; ++level) {
+    for (int level = 0; level < kMostLevels; ++level) {
       const SeedSet fixed = seeds_on_curves(cut, level);
       FreeSeeds::Counts free =
           level == 0 ? free_seeds_.counts(fixed, options.seeds.count) : free_seeds_.coarser(fixed, counts_.back());
@@ -60,7 +61,7 @@ class PatchLevels {
       relax_finest();
     }
     const StageShare part = parts.next();
-    RelaxOptions last = made_ ? for_finest_patches(options_) : options_.relax;
+    RelaxOptions last = made_ ? for_finest_patches(cut_.surface, options_) : options_.relax;
     if (finest_ && !options_.tolerance_requested) last.max_passes = std::min(last.max_passes, kLastPasses);
     return relax_on_sheet(cut_.surface, seeds_on(cut_, free_seeds_, 0, 0), last, context_);
   }
@@ -85,9 +86,9 @@ class PatchLevels {
                  : free_seeds.add(std::move(fixed), counts_[level], options_.seeds.seed);
   }
   std::optional<SeededMesh> relaxed_on(const CutSurface& surface, size_t level, int finer) const {
-    const RelaxOptions relax = for_coarse_level(options_.relax, options_.tolerance_requested);
+    const CoarseLevel coarse{options_.relax, options_.tolerance_requested, !made_};
     SeedSet seeds = seeds_on(surface, FreeSeeds(surface), level, finer);
-    std::optional<SeededMesh> made = relax_level(surface.surface, relax, std::move(seeds), context_);
+    std::optional<SeededMesh> made = relax_level(surface.surface, coarse, std::move(seeds), context_);
     if (made) bring_to_host(*made);
     return made;
   }
@@ -102,7 +103,7 @@ class PatchLevels {
   }
   void relax_finest() {
     const CutSurface& on = finest_->cut;
-    const RelaxOptions relax = made_ ? for_finest_patches(options_) : options_.relax;
+    const RelaxOptions relax = made_ ? for_finest_patches(cut_.surface, options_) : options_.relax;
     RelaxedSeeds relaxed = relax_on_sheet(on.surface, seeds_on(on, FreeSeeds(on), 0, 0), relax, context_);
     made_ = SeededMesh{{}, std::move(relaxed.seeds)};
     bring_to_host(*made_);

@@ -13,12 +13,19 @@ namespace isoshell {
 namespace {
 
 constexpr int64_t kMostRepairPerMille = 60;
-constexpr int32_t kCoarsePasses = 60;
 constexpr int32_t kCoarseTolerancePpb = 30000;
 constexpr int32_t kCoarseSmoothingSteps = 40;
-// Of the finest level after a coarser one. It ends early: the optimisation does the rest better than more passes.
+// Passes of coarse levels on the sheet, which bring seeds to tips and rims, and on their mesh after them, which cost a
+// tenth, but make edges as long everywhere. Random seeds are annealed: irregular vertices that cancel out there are
+// missing on all levels above.
+constexpr int32_t kCoarsePasses = 30, kCoarsePassesAlone = 60;
+constexpr int32_t kAnnealingPasses = 240, kCoarseMeshPasses = 40;
+constexpr double kAnnealingNoiseEdges = 0.08;
+constexpr int64_t kMostSeedsOfCoarsest = 2400;  ///< a quarter of that is enough for most shapes, and less is not
+// Of the finest level after a coarser one. It ends early: the optimisation does the rest better than more passes, but
+// seeds take longer to where lengths want them.
 constexpr int32_t kFinestPasses = 40;
-constexpr int32_t kFinestTolerancePpb = 500000;
+constexpr int32_t kFinestTolerancePpb = 1000000, kFinestTolerancePpbOfLengths = 500000;
 
 constexpr int64_t kFewestSeedsPerHandle = 50;   // that a coarse proxy has too many or too few
 constexpr int64_t kFewestVerticesPerSeed = 24;  // of a coarse proxy: cells are nearly four voxels wide or more
@@ -29,11 +36,11 @@ int64_t coarser_count(int64_t count, const SheetTopology& topology) {
   return (count + 3 * chi) / 4;
 }
 
-/// Counts from coarse to fine, as long as a level has seeds enough.
+/// Counts from coarse to fine, as long as a level has seeds enough, and until one has few.
 std::vector<int64_t> level_counts(int64_t finest, const SheetTopology& sheet) {
   const int64_t fewest = std::max(kFewestSeeds, kFewestPerPart * sheet.components);
   std::vector<int64_t> counts{finest};
-  while (int(counts.size()) < kMaxLevels) {
+  while (counts.size() < 2 || counts.back() > kMostSeedsOfCoarsest) {
     const int64_t coarser = coarser_count(counts.back(), sheet);
     if (coarser < fewest || coarser >= counts.back()) break;
     counts.push_back(coarser);
@@ -114,9 +121,13 @@ class CoarseProxies {
 
 }  // namespace
 
-std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
+std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const CoarseLevel& level, SeedSet seeds,
                                       Context& context) {
   const int64_t requested = seeds.size();
+  const bool has_mesh_passes = surface.lengths.at.empty();
+  RelaxOptions relax = level.relax;
+  relax.max_passes = has_mesh_passes ? kCoarsePasses : kCoarsePassesAlone;
+  if (!level.tolerance_requested) relax.tolerance_ppb = kCoarseTolerancePpb;
   seeds = relax_on_sheet(surface, std::move(seeds), relax, context).seeds;
   Triangulation dual = triangulate_dual(surface, std::move(seeds), {}, context);
   if (dual.report.failed_cells > 0 || dual.seeds.size() - requested > requested * kMostRepairPerMille / 1000) return {};
@@ -124,17 +135,15 @@ std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOpt
   OptimizeOptions optimize;
   optimize.smoothing_steps = kCoarseSmoothingSteps;
   optimize.for_seeds = true;
+  if (has_mesh_passes) optimize.mesh_passes = level.has_random_seeds ? kAnnealingPasses : kCoarseMeshPasses;
+  if (has_mesh_passes && level.has_random_seeds) optimize.noise_edges = kAnnealingNoiseEdges;
   return optimize_mesh(surface, std::move(mesh), optimize, context);
 }
 
-RelaxOptions for_coarse_level(RelaxOptions relax, bool tolerance_requested) {
-  relax.max_passes = kCoarsePasses;
-  if (!tolerance_requested) relax.tolerance_ppb = kCoarseTolerancePpb;
-  return relax;
-}
-RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_requested) {
+RelaxOptions for_finest_level(const SurfaceMesh& surface, RelaxOptions relax, bool tolerance_requested) {
   relax.max_passes = std::min(relax.max_passes, kFinestPasses);
-  if (!tolerance_requested) relax.tolerance_ppb = kFinestTolerancePpb;
+  if (!tolerance_requested)
+    relax.tolerance_ppb = surface.lengths.at.empty() ? kFinestTolerancePpb : kFinestTolerancePpbOfLengths;
   return relax;
 }
 
@@ -142,7 +151,6 @@ RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions
                              const std::function<bool()>& is_in_vain) {
   require_seed_count(prepared.sheet, options.seeds.count);
   std::vector<int64_t> counts = level_counts(options.seeds.count, prepared.sheet.topology);
-  const RelaxOptions coarse = for_coarse_level(options.relax, options.tolerance_requested);
   CoarseProxies proxies(prepared, counts, context);
   for (size_t level = counts.size() - 1; level-- > 0;)  // coarse proxies may lack handles, or have more
     counts[level] = coarser_count(counts[level + 1], proxies.sheet(level).topology);
@@ -152,7 +160,9 @@ RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions
     if (is_in_vain()) return {};
     const StageShare part = parts.next();
     const Sheet& sheet = proxies.sheet(level);
-    if (seeds.size() == 0) seeds = place_seeds(sheet, {counts[level], options.seeds.seed}, context);
+    const bool has_random_seeds = seeds.size() == 0;
+    if (has_random_seeds) seeds = place_seeds(sheet, {counts[level], options.seeds.seed}, context);
+    const CoarseLevel coarse{options.relax, options.tolerance_requested, has_random_seeds};
     const std::optional<SeededMesh> relaxed = relax_level(sheet, coarse, std::move(seeds), context);
     seeds = {};
     if (relaxed) seeds = subdivide_seeds(sheet, relaxed->mesh, relaxed->seeds, counts[level + 1], context);
@@ -163,7 +173,7 @@ RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions
   if (is_in_vain()) return {};
   RelaxOptions finest = options.relax;
   if (seeds.size() > 0)
-    finest = for_finest_level(finest, options.tolerance_requested);
+    finest = for_finest_level(prepared.sheet, finest, options.tolerance_requested);
   else
     seeds = place_seeds(prepared.sheet, options.seeds, context);
   const StageShare part = parts.next();

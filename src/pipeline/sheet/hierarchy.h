@@ -9,17 +9,22 @@
 
 namespace isoshell {
 
-constexpr int kMaxLevels = 3;
 constexpr int64_t kFewestSeeds = 64;    ///< of a level
 constexpr int64_t kFewestPerPart = 12;  ///< seeds of a level; with fewer its dual is no mesh
 
-/// What a coarse level, and the finest after a coarser one, make of the options of a single level.
-RelaxOptions for_coarse_level(RelaxOptions relax, bool tolerance_requested);
-RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_requested);
+/// What a coarse level is relaxed by.
+struct CoarseLevel {
+  RelaxOptions relax;  ///< of a single level
+  bool tolerance_requested = false;
+  bool has_random_seeds = false;  ///< no coarser level came before
+};
+/// What the finest level after a coarser one makes of the options of a single level.
+RelaxOptions for_finest_level(const SurfaceMesh& surface, RelaxOptions relax, bool tolerance_requested);
 
-/// Relaxes a coarse level. Returns its dual with as many vertices as it had seeds, flipped and smoothed, so that the
-/// cells of the seeds that it is split into meet as its triangles do; none when the level is too coarse for the shape.
-std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const RelaxOptions& relax, SeedSet seeds,
+/// Relaxes a coarse level: on the sheet, and where edges are as long everywhere on its mesh, too. Returns its dual with
+/// as many vertices as it had seeds, flipped and smoothed, so that the cells of the seeds that it is split into meet as
+/// its triangles do; none when the level is too coarse for the shape.
+std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const CoarseLevel& level, SeedSet seeds,
                                       Context& context);
 
 struct LevelOptions {
@@ -33,11 +38,12 @@ struct LevelOptions {
 };
 
 /// Relaxes `options.seeds.count` seeds on the sheet. Few seeds are relaxed first and triangulated; each edge's middle
-/// becomes a seed of the next level, where it starts with six neighbours; at most three levels, four times the seeds on
-/// each. A level whose dual needs more than 6 % of repair is too coarse for the shape and is left out. The report is
-/// that of the finest level. Coarse levels relax on coarse proxies of the sites on coarser lattices, whose voxels are
-/// as large beside their cells as those of the sheet are beside the finest level's. `is_in_vain` is asked between
-/// stages; once it says so, the result has no seeds.
+/// becomes a seed of the next level, where it starts with six neighbours; levels have four times the seeds of the one
+/// before, and the coarsest at most 2400, but never fewer than 64, and 12 of each part. A level whose dual needs more
+/// than 6 % of repair is too coarse for the shape and is left out. The report is that of the finest level. Coarse
+/// levels relax on coarse proxies of the sites on coarser lattices, whose voxels are as large beside their cells as
+/// those of the sheet are beside the finest level's. `is_in_vain` is asked between stages; once it says so, the result
+/// has no seeds.
 RelaxedSeeds relax_by_levels(
     const PreparedSurface& prepared, const LevelOptions& options, Context& context,
     const std::function<bool()>& is_in_vain = [] { return false; });
