@@ -30,7 +30,10 @@ struct SheetPass {
   int32_t tolerance_ppb;
 };
 
-constexpr int kMaxMany = 480;  ///< tips whose vertices all pay have both sides of five cells around as candidates
+/// Candidates of a crowded patch. Where all its vertices pay for facing away from the seeds around, these are the seeds
+/// on both sides of a thin wall, as far as the penalty reaches: some 260 within 4.7 cells.
+constexpr int kMaxMany = 480;
+static_assert(kMaxMany % 32 == 0 && kMaxMany / 32 <= 32, "a word of LabelScratch::used a lane");
 
 constexpr int kStagedVertices = 256;  ///< that are copied to shared memory; most patches have no more
 

@@ -25,7 +25,7 @@ class Prepared {
   const Shell& shell() const;          ///< empty unless the method or want_shell asked for it
   const Sheet& sheet() const;          ///< with edge lengths where they vary
   int32_t closing_vox() const;         ///< that was chosen
-  bool is_in_patches() const;          ///< the input's own triangles, or the sheet, are cut along curves and borders
+  bool is_in_patches() const;          ///< the input's own triangles, or the sheet, cut along what curves there are
   bool has_bridges() const;            ///< gaps may be closed by voxels of the sheet
   const RemeshReport& report() const;  ///< what was measured up to here
   void free_samples();  ///< of all copies: relax() and triangulate() of the method sheet do not read them
@@ -39,10 +39,10 @@ class Prepared {
 
 /// Repairs the faces of an input that is not closed and oriented; holes are capped unless a closing is asked for.
 /// Unites the components of one that is: what lies in solid goes, surfaces of hollows stay unless only outer ones are
-/// wanted. Then chooses the grid, voxelises, builds the sheet. For a closed, oriented input the grid is refined by
-/// halves until the sheet's components and genus are the input's, at most to four times the first choice (never beyond
-/// a given resolution), or until two finer grids in a row brought nothing. Throws: nothing_to_mesh, usage,
-/// out_of_memory, interrupted.
+/// wanted. Then chooses the grid, voxelises, builds the sheet. Where that has not the components and genus of a closed,
+/// oriented input, its own triangles are meshed. If that cannot be, the grid is refined by halves, at most to four
+/// times the first choice (never beyond a given resolution), or until two finer grids in a row brought nothing. Throws:
+/// nothing_to_mesh, usage, out_of_memory, interrupted.
 Prepared prepare(const TriangleSoup& soup, const RemeshOptions& options, Context& context);
 /// The same from a mesh, as a result of an earlier call or of the caller's own making: positions, triangles, attributes
 /// and regions count, features and gaps do not. Cost: a copy of it. Throws: unreadable_input, naming the first, for a

@@ -107,6 +107,23 @@ Prepared held(PreparedSurface p, Run& run) {
   return PreparedParts::hold(std::move(p));
 }
 
+/// Finishes a closed surface on its own triangles, with curves or none, where its sheet lacks its components or
+/// handles. False where that is not so or cannot be done: nothing is told of it then.
+bool finish_on_own_triangles(PreparedSurface& p, const PatchSource& source, Run& run) {
+  if (topology_gap(p) == 0 || !may_be_on_own_triangles(p)) return false;
+  const size_t warnings = run.warnings.size();
+  const int64_t bytes = run.memory_estimate_bytes;
+  p.needs_own_triangles = true;
+  finish(p, source, run);
+  if (is_on_own_triangles(p)) return true;
+  p.needs_own_triangles = p.own_faces_meet = false;
+  p.cut.reset();
+  p.report.features = {};
+  run.warnings.resize(warnings);
+  run.memory_estimate_bytes = bytes;
+  return false;
+}
+
 /// Sheets of a surface on finer and finer grids.
 class GridSearch {
  public:
@@ -139,8 +156,7 @@ class GridSearch {
       const int64_t gap = topology_gap(*p);
       if (gap > 0 && !is_refining && plan_.options.previous && !had_curves)
         if (std::optional<PreparedSurface> cut = cut_at_once(host_copy(p->surface))) return std::move(*cut);
-      if (gap > 0 && !is_refining && !plan_.options.previous && reachable && is_cut_on_own_triangles(*p))
-        return std::move(*p);
+      if (!is_refining && finish_on_own_triangles(*p, source_, run_)) return std::move(*p);
       fruitless = gap < best_gap ? 0 : fruitless + 1;
       if (gap < best_gap) {
         best_gap = gap;
@@ -200,23 +216,6 @@ class GridSearch {
     return surface;
   }
 
-  /// Whether a surface is finished on its own triangles, with curves or none, as the sheet joins what is near there, or
-  /// has other handles. Otherwise nothing is told of it.
-  bool is_cut_on_own_triangles(PreparedSurface& p) {
-    if (!may_be_on_own_triangles(plan_, p.surface.first_cap != kNone)) return false;
-    const size_t warnings = run_.warnings.size();
-    const int64_t bytes = run_.memory_estimate_bytes;
-    p.needs_own_triangles = true;
-    finish(p, source_, run_);
-    if (is_on_own_triangles(p)) return true;
-    p.needs_own_triangles = false;
-    p.cut.reset();
-    p.report.features = {};
-    run_.warnings.resize(warnings);
-    run_.memory_estimate_bytes = bytes;
-    return false;
-  }
-
   /// A frame that keeps its curves takes the first grid. None where it is no such frame.
   std::optional<PreparedSurface> cut_at_once(LatticeSurface surface) {
     if (!may_be_cut_at_once(plan_, surface.first_cap != kNone)) return {};
@@ -266,7 +265,8 @@ Prepared prepare(LatticeSurface surface, int32_t closing_vox, const RemeshOption
   std::optional<int32_t> closing;
   if (closing_vox >= 0) closing = closing_vox;
   PreparedSurface p = prepare_surface(std::move(surface), closing, checked(options), run);
-  finish(p, {}, run);
+  const bool keeps_curves = options.features.creases != Features::Creases::off;  // as who kept the lattice had them
+  if (!keeps_curves || !finish_on_own_triangles(p, {}, run)) finish(p, {}, run);
   return held(std::move(p), run);
 }
 

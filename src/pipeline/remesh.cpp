@@ -168,6 +168,7 @@ Triangulated triangulate_anyhow(const PreparedSurface& p, SeededMesh& made, Reme
   try {
     made.seeds = relax_seeds(whole, false, report, run);
   } catch (const NoRoom& error) {  // where the grid is too coarse for that, too, the error says why it is tried
+    if (report.features.given_up.empty()) throw;
     throw NoRoom(error.stage(),
                  std::string(error.what()) + "; creases could not be kept either: " + report.features.given_up);
   }

@@ -55,8 +55,6 @@ std::optional<InFile> shown_in_file(const OptionRow& row, const StageFile& file,
     return digits.str();
   };
   if (name == "resolution") return InFile{!o.resolution || o.resolution == frame.resolution, text(frame.resolution)};
-  if (name == "voxel-size")
-    return InFile{!o.voxel_size_world || *o.voxel_size_world == frame.voxel_size, text(frame.voxel_size)};
   if (name == "band") return InFile{o.band_vox == file.shell.band_vox, text(file.shell.band_vox)};
   if (name == "close-gaps") return InFile{gives_closing(o, kept, file), text(2 * file.info.closing_vox) + "vox"};
   if (name == "vertices") return InFile{!o.vertices || o.vertices == file.seeds->size(), text(file.seeds->size())};

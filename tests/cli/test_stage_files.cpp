@@ -137,6 +137,19 @@ TEST_CASE("run: options that a stage file has fixed are refused where they diffe
   CHECK_FALSE(folder.has("no.ply"));
 }
 
+TEST_CASE("run: bodies within a voxel of one another stay apart from a shell file, too, and a Voronoi file joins them",
+          "[cli][vdb]") {
+  Folder folder;
+  const auto ball = [](double radius) { return shapes::sphere({1, 2, 3}, radius, 48); };
+  folder.write_off("nested.off", shapes::together(shapes::together(ball(1), shapes::inside_out(ball(.98))), ball(.96)));
+  REQUIRE(folder.run("nested.off once.ply --vertices 900 --save-shell s.vdb --require components=3").status == 0);
+  REQUIRE(folder.run("s.vdb resumed.ply --require components=3").status == 0);
+  CHECK(folder.content("once.ply") == folder.content("resumed.ply"));
+  const auto joined = folder.run("nested.off joined.ply --vertices 900 --save-voronoi v.vdb");
+  CHECK(joined.status == 0);
+  CHECK(contains(joined.err, "may tell near parts apart"));
+}
+
 TEST_CASE("run: options that a stage file has fixed may be given as they were", "[cli][vdb]") {
   Folder folder;
   write_ball(folder);

@@ -11,8 +11,9 @@ constexpr int kFractionBits = 8;                     ///< bits below one voxel i
 constexpr int32_t kOneVoxelQ8 = 1 << kFractionBits;  ///< one voxel in 1/256 voxel
 constexpr int32_t kMarginVox = 32;                   ///< empty voxels kept around the surface on every side
 constexpr int32_t kMaxResolution = 8192;             ///< voxels along the longest side of the surface
-constexpr int32_t kMaxBandVox = 20;                  ///< largest shell thickness d
-constexpr int32_t kMaxClosingVox = 15;               ///< largest closing radius r
+constexpr int32_t kMaxExtentVox = kMaxResolution + 2 * kMarginVox + 8;  ///< voxels of a lattice along an axis
+constexpr int32_t kMaxBandVox = 20;                                     ///< largest shell thickness d
+constexpr int32_t kMaxClosingVox = 15;                                  ///< largest closing radius r
 
 /// A voxel by its integer coordinates; never negative inside a lattice. Voxel i covers [256 i, 256 (i + 1)] in q8.
 struct Voxel {

@@ -89,6 +89,9 @@ class Gaps {
     return (v == own.vertex.front() || v == own.vertex.back()) && length_of(mesh_, own) >= kLeastRing * reach_world_;
   }
 
+  /// A vertex of the crease itself, along which no way leads.
+  bool is_on_own(const FreeEnd& end, uint32_t v) const { return chain_[v] == end.chain && !is_goal(end, v); }
+
   bool is_straight_on(const FreeEnd& end, uint32_t v) const {
     const WorldPoint way = mesh_.vertices[v] - mesh_.vertices[end.vertex];
     return dot(way, end.direction) >= kStraightOn * std::sqrt(length_sq(way) * length_sq(end.direction));
@@ -128,7 +131,7 @@ class Gaps {
       for (const uint32_t e : edges_around(v, steps.at(v).edge)) {
         const uint32_t w = edges_.edges[e].end[0] + edges_.edges[e].end[1] - v;
         const double there = so_far + cost(e);
-        if (there > reach_world_ || !is_straight_on(end, w)) continue;
+        if (there > reach_world_ || !is_straight_on(end, w) || is_on_own(end, w)) continue;
         const auto [known, is_new] = steps.try_emplace(w, Step{there, e, v});
         if (!is_new && (known->second.is_done || known->second.cost <= there)) continue;
         known->second = {there, e, v};

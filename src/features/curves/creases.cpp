@@ -284,6 +284,7 @@ std::vector<CurveEdge> with_creases_beside_smooth(const FeatureMesh& mesh, const
       kept.insert(kept.end(), chains[c].edge.begin(), chains[c].edge.end());
   std::sort(kept.begin(), kept.end());
   if (!kept.empty()) {
+    // Before facets, whose edges end at curves.
     const std::vector<uint32_t> across =
         edges_across_gaps(mesh, edges, turns, with_creases(fixed, kept, turns), edge_length_world);
     kept.insert(kept.end(), across.begin(), across.end());

@@ -135,10 +135,10 @@ class Slivers : private EditableMesh {
     size_t edge;
   };
 
-  /// Once a change is about to be made, which on scans none is: it takes most of the time to put triangles into cells.
-  bool are_kept_apart() {
+  /// Only when the first change is about to be made. On scans none is, and putting triangles into cells takes longer
+  /// than all else.
+  void keep_apart_from_now_on() {
     if (!std::exchange(is_apart_, true)) keep_apart(cell());
-    return true;
   }
 
   /// A triangle's box meets few of them in the mean, however large some triangles are.
@@ -290,9 +290,12 @@ class Slivers : private EditableMesh {
 
   bool flip(const Flap& f, bool is_longest) {
     if (!may_change_around(f.c) || !may_change_around(f.d) || was_flipped_.count(edge_key(f.c, f.d)) > 0) return false;
-    if (!EditableMesh::flip(f.triangle, f.edge, change_,
-                            [&] { return should_flip(f, is_longest) && are_kept_apart(); }))
-      return false;
+    const auto may_flip = [&] {
+      if (!should_flip(f, is_longest)) return false;
+      keep_apart_from_now_on();
+      return true;
+    };
+    if (!EditableMesh::flip(f.triangle, f.edge, change_, may_flip)) return false;
     was_flipped_.insert(edge_key(f.a, f.b));
     for (const uint32_t t : {f.triangle, f.other})
       for (size_t i = 0; i < 3; ++i)
@@ -318,7 +321,8 @@ class Slivers : private EditableMesh {
         const WorldPoint was = area_of(change_.number[i]), now = normal(change_.made[i]);
         if (!is_thin(change_.number[i]) && !(dot(was, now) > kLeastCosine * length(was) * length(now))) return false;
       }
-      return are_kept_apart();
+      keep_apart_from_now_on();
+      return true;
     };
     if (!EditableMesh::collapse(gone, into, change_, turns_little)) return false;
     reach_[into] = std::max(reach_[into], reach);

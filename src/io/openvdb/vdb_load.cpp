@@ -107,8 +107,7 @@ LatticeFrame read_frame(const StageReader& file) {
   in.get("extent_x", f.extent_vox[0]).get("extent_y", f.extent_vox[1]).get("extent_z", f.extent_vox[2]);
   bool good = in.ok() && std::isfinite(f.origin.x) && std::isfinite(f.origin.y) && std::isfinite(f.origin.z) &&
               std::isfinite(f.voxel_size) && f.voxel_size > 0 && f.resolution >= 1 && f.resolution <= kMaxResolution;
-  for (const int32_t extent : f.extent_vox)
-    good = good && extent > 0 && extent % 8 == 0 && extent <= kMaxResolution + 2 * kMarginVox + 8;
+  for (const int32_t extent : f.extent_vox) good = good && extent > 0 && extent % 8 == 0 && extent <= kMaxExtentVox;
   if (!good) file.fail("metadata \"" + std::string(kKeyFrame) + "\" is not a lattice: " + text);
   return f;
 }

@@ -69,8 +69,9 @@ std::string metadata_bytes(const VdbGridSpan& grid) {
 bool is_too_small(const openvdb::math::MapBase& map) {
   using namespace openvdb::math;
   constexpr double kLeastCopied = 1e-14;  // above the 3e-15 that it says, by the rounding of a product
-  return !map.isType<openvdb::math::AffineMap>() &&
-         map.voxelSize().x() * map.voxelSize().y() * map.voxelSize().z() < kLeastCopied;
+  const bool is_of_scales = map.isType<UniformScaleMap>() || map.isType<ScaleMap>() ||
+                            map.isType<UniformScaleTranslateMap>() || map.isType<ScaleTranslateMap>();
+  return is_of_scales && map.voxelSize().x() * map.voxelSize().y() * map.voxelSize().z() < kLeastCopied;
 }
 
 /// One of the same type that OpenVDB copies.

@@ -89,9 +89,10 @@ int32_t Plan::first_resolution() const {
 }
 
 LatticeFrame Plan::frame(int32_t resolution) const {
-  if (!options.voxel_size_world) return LatticeFrame::around(box.min, box.max, resolution);
-  requested_voxel_resolution(longest_side(box), *options.voxel_size_world);
-  return LatticeFrame::on_multiples(box.min, box.max, *options.voxel_size_world);
+  const std::optional<double>& size = options.voxel_size_world;
+  return size && resolution == resolution_for_voxel(longest_side(box), *size)
+             ? LatticeFrame::on_multiples(box.min, box.max, *size)
+             : LatticeFrame::around(box.min, box.max, resolution);
 }
 
 RelaxOptions relax_options(const RemeshOptions& options) {

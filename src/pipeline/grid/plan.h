@@ -38,8 +38,7 @@ struct Plan {
   /// Voxels along the longest side that the run starts with: the user's, or so many that a cell is 4.5 to 5.5 voxels
   /// wide. Throws: usage when a voxel size does not give 8 to 8192.
   int32_t first_resolution() const;
-  /// Of so many voxels along the longest side, or of the voxel size that the options name, which gives as many. Throws:
-  /// usage, as first_resolution.
+  /// Of so many voxels along the longest side; of exactly the size that the options name, where that gives as many.
   LatticeFrame frame(int32_t resolution) const;
   double first_voxel_size_world() const { return frame(first_resolution()).voxel_size; }
   bool chooses_grid() const { return !options.resolution && !options.voxel_size_world; }

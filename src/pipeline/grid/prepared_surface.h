@@ -40,7 +40,7 @@ struct PreparedSurface {
   std::shared_ptr<const PreviousFrame> previous;  ///< that of the options, where the run begins with it
   std::shared_ptr<CreaseSearch> creases;          ///< looked for while a device makes the sheet
   bool own_faces_meet = false;                    ///< on the lattice, even where they are cut along one another
-  bool needs_own_triangles = false;               ///< whether they have curves or none: the sheet joins what is apart
+  bool needs_own_triangles = false;               ///< even without curves: the sheet lacks the input's topology
   std::shared_ptr<const CutSurface> cut;      ///< the input's own triangles in patches; null where no features are kept
   std::shared_ptr<const RegionWalls> walls;   ///< of regions, which the surface parts; null: it bounds one solid
   std::shared_ptr<RelaxedMeanwhile> relaxed;  ///< on a device while creases were looked for, in case there are none

@@ -327,6 +327,7 @@ bool cut_along(const FeatureMesh& mesh, const CurveOptions& curves, std::optiona
     all = describe(mesh, network);
     const std::string against = is_open ? obstacle_to_borders(network) : obstacle(p, mesh, network);
     if (!against.empty() && is_open) return against;
+    if (!against.empty() && p.needs_own_triangles) return against;
     CutAlongCurves cut;
     if (!against.empty()) {
       cut = cut_sheet(mesh, network, curves.edge_length_world, against, p.previous.get(), p, found, run);

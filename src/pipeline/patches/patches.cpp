@@ -241,7 +241,10 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, Seeded
     made_here = mesh_of_patches(p, features.border_loops, made, in_patches, run);
   }
   if (!made_here.why_not.empty()) {
-    give_up(p.cut->source->if_lost, made_here.why_not, features, run);
+    if (p.cut->curves.empty())
+      run.warn("the surface is meshed on its voxels, not on its own triangles: " + made_here.why_not);
+    else
+      give_up(p.cut->source->if_lost, made_here.why_not, features, run);
     return {};
   }
   const CutSurface& cut = *p.cut;
@@ -250,7 +253,8 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, Seeded
     report.intersection_at = tell_intersections(p.surface.frame, made_here, run);
   report.dual = made_here.dual;
   report.optimize = made_here.optimize;
-  report.count.why = "its curves need them, or leave no room for more";
+  report.count.why = p.cut->curves.empty() ? "parts of the surface are nearer to one another than edges are long"
+                                           : "its curves need them, or leave no room for more";
   warn_of_left_alone(made_here.joined.left_alone, run);
   if (cut.source->is_sheet) {
     const std::vector<uint32_t> at = run_with_threads(run.context, [&] { return nearest_of_sheet(p.sheet, mesh); });
@@ -269,7 +273,8 @@ std::optional<TriangleMesh> triangulate_patches(const PreparedSurface& p, Seeded
   measure_edges(cut, made_here.joined, report.sizing);
   features.vertices = made_here.joined.on_curves;
   features.segments = int64_t(mesh.features.curve_edges.size());
-  features.kept = report.is_optimized = true;
+  report.is_optimized = true;
+  features.kept = !cut.curves.empty();
   report_kept(cut, features, run);
   return std::move(mesh);
 }

@@ -11,19 +11,22 @@
 
 namespace isoshell {
 
-bool may_be_on_own_triangles(const Plan& plan, bool has_caps) {
+bool may_be_cut_at_once(const Plan& plan, bool has_caps) {
   const RemeshOptions& options = plan.options;
   const InputTopology& input = plan.input;
-  const bool closes_gaps = options.closing_vox.value_or(0) > 0 || options.closing_world.value_or(0) > 0;
-  return options.method == Method::sheet && !closes_gaps && input.closed && input.oriented && !has_caps &&
+  const bool needs_sheet = options.method != Method::sheet || options.want_shell || wants_lengths(options) ||
+                           options.edge_length_world || options.closing_vox || options.closing_world;
+  return options.previous && !needs_sheet && input.closed && input.oriented && !has_caps &&
          shows_most_handles(plan.target.vertices, input);
 }
 
-bool may_be_cut_at_once(const Plan& plan, bool has_caps) {
-  const RemeshOptions& options = plan.options;
-  const bool needs_sheet = options.want_shell || wants_lengths(options) || options.edge_length_world ||
-                           options.closing_vox || options.closing_world;
-  return options.previous && !needs_sheet && may_be_on_own_triangles(plan, has_caps);
+bool may_be_on_own_triangles(const PreparedSurface& p) {
+  const RemeshOptions& options = p.options;
+  const InputTopology& input = p.surface.topology;
+  const bool closes_gaps = options.closing_vox.value_or(0) > 0 || options.closing_world.value_or(0) > 0;
+  const bool may_keep_seeds = options.want_shell && options.features.creases == Features::Creases::off;
+  return options.method == Method::sheet && !closes_gaps && !may_keep_seeds && input.oriented &&
+         p.surface.first_cap == kNone && can_compare(input) && shows_all_parts(p.target_of_input.vertices, input);
 }
 
 std::optional<PreparedSurface> prepare_patches_alone(LatticeSurface surface, const RemeshOptions& options,

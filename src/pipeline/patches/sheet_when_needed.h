@@ -7,13 +7,15 @@
 
 namespace isoshell {
 
-/// Whether a surface is one that needs no gaps closed and has no walls to be grown, so that its own triangles can be
-/// meshed whatever topology a sheet has.
-bool may_be_on_own_triangles(const Plan& plan, bool has_caps);
-
-/// Whether a frame takes the first grid when its surface can be cut along curves there: it begins with the frame
-/// before, may be on its own triangles, and the options say nothing that only a sheet can answer.
+/// Whether a frame takes the first grid when its surface can be cut along curves there, whatever topology a sheet has
+/// on it: it begins with the frame before, the options say nothing that only a sheet can answer, and the surface is one
+/// that needs no walls grown and no gaps closed.
 bool may_be_cut_at_once(const Plan& plan, bool has_caps);
+
+/// Whether the own triangles of a surface can be meshed whatever topology its sheet has: it is closed and oriented, no
+/// gaps are to be closed, there are vertices enough for its components and handles, and no seeds are to be kept in
+/// voxels.
+bool may_be_on_own_triangles(const PreparedSurface& p);
 
 /// The surface, cut along its curves on its own triangles, without sites, samples and sheet. None where it cannot be
 /// cut so: of the run's log only its times stay then.

@@ -15,11 +15,12 @@ namespace {
 constexpr int64_t kMostRepairPerMille = 60;
 constexpr int32_t kCoarseTolerancePpb = 30000;
 constexpr int32_t kCoarseSmoothingSteps = 40;
-// Passes of coarse levels on the sheet, which bring seeds to tips and rims, and on their mesh after them, which cost a
-// tenth, but make edges as long everywhere. Random seeds are annealed: irregular vertices that cancel out there are
-// missing on all levels above.
+// Passes of coarse levels on the sheet bring seeds to tips and rims. Those on their mesh after them cost a tenth, but
+// make edges as long everywhere.
 constexpr int32_t kCoarsePasses = 30, kCoarsePassesAlone = 60;
-constexpr int32_t kAnnealingPasses = 240, kCoarseMeshPasses = 40;
+constexpr int32_t kCoarseMeshPasses = 40;
+// Random seeds are annealed: irregular vertices that cancel out there are missing on all levels above.
+constexpr int32_t kAnnealingPasses = 240;
 constexpr double kAnnealingNoiseEdges = 0.08;
 constexpr int64_t kMostSeedsOfCoarsest = 2400;  ///< a quarter of that is enough for most shapes, and less is not
 // Of the finest level after a coarser one. It ends early: the optimisation does the rest better than more passes, but

@@ -15,11 +15,10 @@ void require_inside(const LatticeSurface& surface) {
     throw Error(ErrorCode::nothing_to_mesh, "sites", "the surface has 0 triangles; a mesh needs at least 1");
   const int32_t* extent = surface.frame.extent_vox;
   const int32_t largest = std::max({extent[0], extent[1], extent[2]});
-  const int32_t limit = (kMaxResolution + 2 * kMarginVox + 8) / 8 * 8;
-  if (largest > limit || std::min({extent[0], extent[1], extent[2]}) < 1)
-    throw Error(
-        ErrorCode::usage, "sites",
-        "the lattice is " + std::to_string(largest) + " voxels wide; each side must be 1 to " + std::to_string(limit));
+  if (largest > kMaxExtentVox || std::min({extent[0], extent[1], extent[2]}) < 1)
+    throw Error(ErrorCode::usage, "sites",
+                "the lattice is " + std::to_string(largest) + " voxels wide; each side must be 1 to " +
+                    std::to_string(kMaxExtentVox));
   if (surface.points.space() != MemorySpace::host) return;  // made by snap_surface, which keeps inside
   for (PointQ8 p : surface.points)
     if (p.x < 1 || p.y < 1 || p.z < 1 || p.x >= extent[0] * kOneVoxelQ8 || p.y >= extent[1] * kOneVoxelQ8 ||

@@ -10,10 +10,9 @@ namespace {
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::usage, "surface", message); }
 
 void require_extent(const SurfaceTriangles& from) {
-  constexpr int32_t kMost = kMaxResolution + 2 * kMarginVox;
   for (const int32_t extent : from.extent_vox)
-    if (extent < 1 || extent > kMost)
-      refuse("extent_vox is " + std::to_string(extent) + "; it must be 1 to " + std::to_string(kMost) +
+    if (extent < 1 || extent > kMaxExtentVox)
+      refuse("extent_vox is " + std::to_string(extent) + "; it must be 1 to " + std::to_string(kMaxExtentVox) +
              ": that of a LatticeFrame");
   for (size_t v = 0; v < from.position.size(); ++v) {
     const PointQ8 p = from.position[v];
