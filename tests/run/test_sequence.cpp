@@ -107,22 +107,6 @@ TEST_CASE("sequence: parts that become one mesh on with the right topology", "[s
   CHECK(components == std::vector<int64_t>{2, 1, 1});
 }
 
-TEST_CASE("sequence: bodies within a voxel of one another stay apart in every frame", "[sequence]") {
-  const TemporaryFolder folder;
-  const auto nested = [](int frame) {
-    const auto ball = [](double radius) { return shapes::sphere({0, 0, 0}, radius, 48); };
-    return turned(shapes::together(shapes::together(ball(1), shapes::inside_out(ball(.98))), ball(.96)), .02 * frame);
-  };
-  const SequenceRequest request = frames_in(folder, 3, nested);
-  TestContext context;
-  run_sequence(request, context);
-  for (int frame = 0; frame < 3; ++frame) {
-    const MeshTopology topology = check_mesh(mesh_of(read_mesh(path_of_frame(request.frame.output.path, frame))));
-    CHECK(topology.components == 3);
-    CHECK(topology.is_manifold_with(0));
-  }
-}
-
 TEST_CASE("sequence: a crisp part that turns keeps its creases, and the vertices on them", "[sequence]") {
   TestContext context;
   const TemporaryFolder folder;

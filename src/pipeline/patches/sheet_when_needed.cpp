@@ -25,7 +25,7 @@ bool may_be_on_own_triangles(const PreparedSurface& p) {
   const InputTopology& input = p.surface.topology;
   const bool closes_gaps = options.closing_vox.value_or(0) > 0 || options.closing_world.value_or(0) > 0;
   const bool may_keep_seeds = options.want_shell && options.features.creases == Features::Creases::off;
-  return options.method == Method::sheet && !closes_gaps && !may_keep_seeds && input.oriented &&
+  return options.method == Method::sheet && !options.previous && !closes_gaps && !may_keep_seeds && input.oriented &&
          p.surface.first_cap == kNone && can_compare(input) && shows_all_parts(p.target_of_input.vertices, input);
 }
 

@@ -13,8 +13,8 @@ namespace isoshell {
 bool may_be_cut_at_once(const Plan& plan, bool has_caps);
 
 /// Whether the own triangles of a surface can be meshed whatever topology its sheet has: it is closed and oriented, no
-/// gaps are to be closed, there are vertices enough for its components and handles, and no seeds are to be kept in
-/// voxels.
+/// gaps are to be closed, there are vertices enough for its components and handles, no seeds are to be kept in voxels,
+/// and it follows no frame: a splash would change between its triangles and the sheet, and lose edges each time.
 bool may_be_on_own_triangles(const PreparedSurface& p);
 
 /// The surface, cut along its curves on its own triangles, without sites, samples and sheet. None where it cannot be
