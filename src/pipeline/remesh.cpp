@@ -158,8 +158,8 @@ Triangulated triangulate_on_sheet(const PreparedSurface& p, SeededMesh& made, Re
 Triangulated triangulate_anyhow(const PreparedSurface& p, SeededMesh& made, RemeshReport& report, Run& run) {
   if (p.walls) return {triangulate_regions(p, made, patch_options(p, p.cut->seeds, false), report, run)};
   SheetWhenNeeded sheet(p, run);
-  const bool in_patches_alone = p.cut && (made.seeds.fixed.count > 0 || p.needs_own_triangles);
-  if (!in_patches_alone) return triangulate_on_sheet(sheet.get(), made, report, run);
+  const bool is_in_patches = p.cut && (made.seeds.fixed.count > 0 || p.needs_own_triangles);
+  if (!is_in_patches) return triangulate_on_sheet(sheet.get(), made, report, run);
   const PatchOptions in_patches = patch_options(p, p.cut->seeds, report.coherence.began_warm);
   if (std::optional<TriangleMesh> mesh = triangulate_patches(p, made, in_patches, report, run))
     return {std::move(*mesh)};

@@ -40,6 +40,11 @@ TEST_CASE("lattice: one of a voxel size lies on its multiples, by whole leaves, 
     CHECK(moved.index_space().first == Voxel{0, 0, 0});
     CHECK(moved.index_space().zero_world.y == moved.origin.y + voxel / 2);
   }
+  for (double low = 0; low < 16; low += .37) {  // however the largest lattice lies on whole leaves
+    const LatticeFrame largest = LatticeFrame::on_multiples({low, 0, 0}, {low + kMaxResolution - .6, 1, 1}, 1);
+    CHECK(largest.resolution == kMaxResolution);
+    CHECK(largest.extent_vox[0] <= kMaxExtentVox);
+  }
   CHECK_THROWS_AS(LatticeFrame::on_multiples({0, 0, 0}, {1, 1, 1}, 1e-5), Error);
   CHECK_THROWS_AS(LatticeFrame::on_multiples({0, 0, 0}, {0, 0, 0}, 1), Error);
   const IndexSpace far = LatticeFrame::on_multiples({1e9, 0, 0}, {1e9 + 1, 1, 1}, .1).index_space();

@@ -15,6 +15,8 @@ namespace {
 constexpr double kStraightOn = .5;          // cosine between a crease and the way on: 60 degrees
 constexpr double kTurnsDegrees = 20;        // from these on an edge counts as long as it is
 constexpr double kDirectionInReaches = .5;  // of a crease, of which its direction is taken
+constexpr size_t kMostAround = 64;          // edges at a vertex: no way leads through the middle of a larger fan
+constexpr size_t kMostSteps = 4096;         // vertices that one end looks at, however fine the mesh is
 constexpr double kLeastRing = 4;            // reaches: shorter creases do not become rings
 
 /// Where a crease ends freely.
@@ -103,10 +105,11 @@ class Gaps {
     return (2 - turned) * length(mesh_.vertices[b] - mesh_.vertices[a]);
   }
 
-  /// Inner edges at a vertex, in the fan around one of them.
+  /// Inner edges at a vertex, in the fan around one of them; none where these are many.
   std::vector<uint32_t> edges_around(uint32_t v, uint32_t first) const {
     std::vector<uint32_t> around{first};
     for (size_t i = 0; i < around.size(); ++i) {
+      if (around.size() > kMostAround) return {};
       if (!edges_.is_inner(around[i])) continue;
       for (const uint32_t face : edges_.edges[around[i]].face)
         for (const uint32_t e : edges_.of_triangle[face]) {
@@ -123,7 +126,7 @@ class Gaps {
   std::vector<uint32_t> way_on(const FreeEnd& end) const {
     Steps steps{{end.vertex, {0, end.edge, kNone}}};
     std::priority_queue<std::pair<double, uint32_t>, std::vector<std::pair<double, uint32_t>>, std::greater<>> queue;
-    for (queue.push({0, end.vertex}); !queue.empty();) {
+    for (queue.push({0, end.vertex}); !queue.empty() && steps.size() < kMostSteps;) {
       const auto [so_far, v] = queue.top();
       queue.pop();
       if (std::exchange(steps.at(v).is_done, true)) continue;

@@ -21,10 +21,8 @@ constexpr int32_t kLastPasses = 10;              ///< of the finest level, on th
 constexpr int kMostLevels = 3;
 constexpr int64_t kFewPerSeed = 13;  ///< vertices; coarser surfaces have 11 to 17
 
-RelaxOptions for_finest_patches(const SurfaceMesh& surface, const PatchOptions& options) {
-  RelaxOptions relax = for_finest_level(surface, options.relax, options.tolerance_requested);
-  if (!options.tolerance_requested) relax.tolerance_ppb = kFinestTolerancePpb;
-  return relax;
+RelaxOptions for_finest_patches(const PatchOptions& options) {
+  return for_finest_level(options.relax, options.tolerance_requested, kFinestTolerancePpb);
 }
 
 /// The levels of seeds, of which the first is the finest, and the surfaces with fewer triangles that they relax on.
@@ -61,7 +59,7 @@ class PatchLevels {
       relax_finest();
     }
     const StageShare part = parts.next();
-    RelaxOptions last = made_ ? for_finest_patches(cut_.surface, options_) : options_.relax;
+    RelaxOptions last = made_ ? for_finest_patches(options_) : options_.relax;
     if (finest_ && !options_.tolerance_requested) last.max_passes = std::min(last.max_passes, kLastPasses);
     return relax_on_sheet(cut_.surface, seeds_on(cut_, free_seeds_, 0, 0), last, context_);
   }
@@ -103,7 +101,7 @@ class PatchLevels {
   }
   void relax_finest() {
     const CutSurface& on = finest_->cut;
-    const RelaxOptions relax = made_ ? for_finest_patches(cut_.surface, options_) : options_.relax;
+    const RelaxOptions relax = made_ ? for_finest_patches(options_) : options_.relax;
     RelaxedSeeds relaxed = relax_on_sheet(on.surface, seeds_on(on, FreeSeeds(on), 0, 0), relax, context_);
     made_ = SeededMesh{{}, std::move(relaxed.seeds)};
     bring_to_host(*made_);

@@ -118,8 +118,7 @@ RelaxedSeeds relax_patches_from_previous(const CutSurface& cut, const PatchOptio
   FreeSeeds::Counts before(patch_count(cut), 0);
   for (const uint32_t v : inside.seeds.home) ++before[cut.surface.patch[v]];
   const FreeSeeds::Counts counts = free_seeds.as_before(free_seeds.counts(fixed, options.seeds.count), before);
-  RelaxOptions relax = for_finest_level(cut.surface, options.relax, options.tolerance_requested);
-  if (!options.tolerance_requested) relax.tolerance_ppb = kWarmTolerancePpb;
+  const RelaxOptions relax = for_finest_level(options.relax, options.tolerance_requested, kWarmTolerancePpb);
   return relax_on_sheet(cut.surface, free_seeds.add_finer(std::move(fixed), counts, inside, options.seeds.seed), relax,
                         context);
 }

@@ -141,11 +141,13 @@ std::optional<SeededMesh> relax_level(const SurfaceMesh& surface, const CoarseLe
   return optimize_mesh(surface, std::move(mesh), optimize, context);
 }
 
-RelaxOptions for_finest_level(const SurfaceMesh& surface, RelaxOptions relax, bool tolerance_requested) {
+RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_requested, int32_t usual_tolerance_ppb) {
   relax.max_passes = std::min(relax.max_passes, kFinestPasses);
-  if (!tolerance_requested)
-    relax.tolerance_ppb = surface.lengths.at.empty() ? kFinestTolerancePpb : kFinestTolerancePpbOfLengths;
+  if (!tolerance_requested) relax.tolerance_ppb = usual_tolerance_ppb;
   return relax;
+}
+int32_t finest_tolerance_ppb(const SurfaceMesh& sheet) {
+  return sheet.lengths.at.empty() ? kFinestTolerancePpb : kFinestTolerancePpbOfLengths;
 }
 
 RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions& options, Context& context,
@@ -174,7 +176,7 @@ RelaxedSeeds relax_by_levels(const PreparedSurface& prepared, const LevelOptions
   if (is_in_vain()) return {};
   RelaxOptions finest = options.relax;
   if (seeds.size() > 0)
-    finest = for_finest_level(prepared.sheet, finest, options.tolerance_requested);
+    finest = for_finest_level(finest, options.tolerance_requested, finest_tolerance_ppb(prepared.sheet));
   else
     seeds = place_seeds(prepared.sheet, options.seeds, context);
   const StageShare part = parts.next();

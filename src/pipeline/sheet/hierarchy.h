@@ -18,8 +18,11 @@ struct CoarseLevel {
   bool tolerance_requested = false;
   bool has_random_seeds = false;  ///< no coarser level came before
 };
-/// What the finest level after a coarser one makes of the options of a single level.
-RelaxOptions for_finest_level(const SurfaceMesh& surface, RelaxOptions relax, bool tolerance_requested);
+/// What the finest level after a coarser one makes of the options of a single level: it stops at the usual tolerance,
+/// unless one is requested.
+RelaxOptions for_finest_level(RelaxOptions relax, bool tolerance_requested, int32_t usual_tolerance_ppb);
+/// The usual one on a sheet.
+int32_t finest_tolerance_ppb(const SurfaceMesh& sheet);
 
 /// Relaxes a coarse level: on the sheet, and where edges are as long everywhere on its mesh, too. Returns its dual with
 /// as many vertices as it had seeds, flipped and smoothed, so that the cells of the seeds that it is split into meet as

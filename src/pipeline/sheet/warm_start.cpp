@@ -82,7 +82,8 @@ RelaxedSeeds relax_from_previous(const Sheet& sheet, const PreviousFrame& previo
                                  const RelaxOptions& options, bool tolerance_requested, Context& context) {
   SeedSet seeds = attach_to_sheet(sheet, seeds_at(previous.carried, sheet.frame), 0, context);
   if (seeds.size() < wanted) seeds = with_more(sheet, previous, std::move(seeds), wanted, context);
-  return relax_on_sheet(sheet, std::move(seeds), for_finest_level(sheet, options, tolerance_requested), context);
+  const RelaxOptions finest = for_finest_level(options, tolerance_requested, finest_tolerance_ppb(sheet));
+  return relax_on_sheet(sheet, std::move(seeds), finest, context);
 }
 
 OptimizeOptions for_warm_frame(OptimizeOptions options) {
